@@ -1,0 +1,188 @@
+#include "cli/console.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "fmt/format.h"
+#include "kinebase/core/parallel.h"
+
+namespace kinebase::cli {
+namespace {
+
+constexpr int kBarWidth = 24;
+
+bool IsTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
+
+bool UseColour() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  return IsTerminal(stderr) && (no_colour == nullptr || *no_colour == '\0');
+}
+
+// Columns that a text takes on a terminal: continuation bytes of UTF-8 take none.
+std::size_t DisplayWidth(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+// Clears its line when the work is over, whether it went well or not.
+class ProgressBar {
+ public:
+  ~ProgressBar() {
+    if (drawn_) std::fputs("\r\033[K", stderr);
+  }
+
+  bool Show(std::string_view what, std::size_t done, std::size_t total) {
+    const auto now = std::chrono::steady_clock::now();
+    constexpr auto kBetweenDrawings = std::chrono::milliseconds(50);
+    if (now - last_ < kBetweenDrawings) return true;
+    last_ = now;
+    drawn_ = true;
+    const double share = total == 0 ? 0 : static_cast<double>(done) / static_cast<double>(total);
+    const int filled = static_cast<int>(share * kBarWidth);
+    fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {}/{}\033[K", what, "", filled, "",
+               kBarWidth - filled, done, total);
+    std::fflush(stderr);
+    return true;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_;
+  bool drawn_ = false;
+};
+
+}  // namespace
+
+void AddOutputOptions(CLI::App& command, CommonOptions& options) {
+  command.add_flag("--json", options.json, "Print the result as JSON");
+  command.add_flag("-q,--quiet", options.quiet, "No progress, no diagnostics");
+}
+
+void AddThreadsOption(CLI::App& command, CommonOptions& options) {
+  command.add_option("--threads", options.threads, "Threads to use (default: all that there are)")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+}
+
+void AddForceOption(CLI::App& command, CommonOptions& options) {
+  command.add_flag("-f,--force", options.force, "Overwrite what is there");
+}
+
+void AddLoadOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--skeleton", options.load.skeleton, "Skeleton of the motion (ASF)")
+      ->type_name("FILE");
+  command
+      .add_option("--source-rate", options.load.source_rate_hz,
+                  "Frames a second, for files that do not tell")
+      ->check(CLI::PositiveNumber)
+      ->type_name("HZ");
+  command.add_flag("--strict", options.load.strict, "Refuse files that would be repaired");
+  const std::map<std::string, LengthReading> readings = {
+      {"auto", LengthReading::kAuto},
+      {"inches", LengthReading::kDivideToInches},
+      {"centimetres", LengthReading::kMultiplyToCentimetres}};
+  command
+      .add_option("--asf-length", options.load.length_reading,
+                  "What an ASF's ':units length u' means: v / u inches, or v · u centimetres")
+      ->transform(CLI::CheckedTransformer(readings, CLI::ignore_case))
+      ->option_text("auto|inches|centimetres");
+}
+
+ProgressCallback MakeProgress(const CommonOptions& options) {
+  if (options.quiet || !IsTerminal(stderr)) return {};
+  return [bar = std::make_shared<ProgressBar>()](std::string_view what, std::size_t done,
+                                                 std::size_t total) {
+    return bar->Show(what, done, total);
+  };
+}
+
+void Print(std::string_view text) {
+  const bool failed =
+      std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0;
+  if (failed) throw Error(ErrorCode::kIoFailure, "cannot write to standard output");
+}
+
+void PrintJson(const Json& json) {
+  // Names of files need not be UTF-8: what is not is replaced, as JSON cannot hold it.
+  Print(json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+void PrintError(std::string_view message) {
+  fmt::print(stderr, "{}error:{} {}\n", UseColour() ? "\033[1;31m" : "",
+             UseColour() ? "\033[0m" : "", message);
+}
+
+void PrintNote(const CommonOptions& options, std::string_view message) {
+  if (!options.quiet) fmt::print(stderr, "{}\n", message);
+}
+
+void PrintDiagnostics(const CommonOptions& options, const std::filesystem::path& file,
+                      const Diagnostics& diagnostics) {
+  for (const Diagnostic& diagnostic : diagnostics) {
+    if (diagnostic.severity == Severity::kInfo) continue;  // `info` shows these.
+    const Place place{file, diagnostic.line, diagnostic.byte};
+    PrintNote(options, fmt::format("{}: {}: {}", place.ToString(), ToString(diagnostic.severity),
+                                   diagnostic.message));
+  }
+}
+
+void WriteTextOrPrint(const std::filesystem::path& path, std::string_view text,
+                      const CommonOptions& options) {
+  if (path.empty() || path == "-") {
+    Print(text);
+  } else {
+    WriteFile(path, text, options.overwrite());
+  }
+}
+
+std::string FormatCount(std::int64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string FormatTime(double seconds) {
+  // Rounded first, so that 59.97 becomes 1:00.0 and not 0:60.0.
+  const auto tenths = static_cast<std::int64_t>(seconds * 10 + 0.5);
+  return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
+}
+
+TextTable::TextTable(std::vector<std::string> titles) {
+  for (std::string& title : titles) {
+    right_aligned_.push_back(title.starts_with('>'));
+    if (right_aligned_.back()) title.erase(0, 1);
+  }
+  rows_.push_back(std::move(titles));
+}
+
+void TextTable::Add(std::vector<std::string> cells) {
+  cells.resize(right_aligned_.size());
+  rows_.push_back(std::move(cells));
+}
+
+std::string TextTable::ToString() const {
+  std::vector<std::size_t> widths(right_aligned_.size(), 0);
+  for (const auto& row : rows_) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], DisplayWidth(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - DisplayWidth(row[i]), ' ');
+      if (i > 0) line += "  ";
+      line += right_aligned_[i] ? padding + row[i] : row[i] + padding;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  }
+  return text;
+}
+
+double Stopwatch::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+}  // namespace kinebase::cli

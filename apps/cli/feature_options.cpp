@@ -1,0 +1,47 @@
+#include "cli/feature_options.h"
+
+#include <algorithm>
+
+#include "fmt/format.h"
+#include "kinebase/core/error.h"
+
+namespace kinebase::cli {
+
+CLI::Option* AddProfileOption(CLI::App& command, std::string& profile, const std::string& text) {
+  return command.add_option("--profile", profile, text)
+      ->check(CLI::IsMember({"bonn", "paper"}))
+      ->type_name("NAME");
+}
+
+CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set) {
+  return command
+      .add_option("--feature-set", feature_set, "Feature set: bonn, paper or a file of your own")
+      ->type_name("NAME|FILE");
+}
+
+void AddRateOption(CLI::App& command, double& rate_hz) {
+  command
+      .add_option("--rate", rate_hz, "Columns a second; must divide the feature set's rate (120)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("HZ")
+      ->capture_default_str();
+}
+
+FeatureSet FeatureSetOfTemplate(const MotionTemplate& motion_template,
+                                const std::string& feature_set) {
+  const auto built_in = BuiltInFeatureSets();
+  const bool is_built_in =
+      std::ranges::find(built_in, motion_template.feature_set) != built_in.end();
+  if (feature_set.empty() && !is_built_in) {
+    throw Error(ErrorCode::kNotFound,
+                fmt::format("template '{}' needs the feature set '{}': name its file with "
+                            "--feature-set",
+                            motion_template.name, motion_template.feature_set));
+  }
+  FeatureSet features =
+      LoadFeatureSet(feature_set.empty() ? motion_template.feature_set : feature_set);
+  CheckFeatureSet(motion_template, features);
+  return features;
+}
+
+}  // namespace kinebase::cli

@@ -1,0 +1,33 @@
+// Choosing feature set, profile and rate: options that `features`, `learn` and `search` share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "kinebase/features/feature_set.h"
+#include "kinebase/templates/motion_template.h"
+
+namespace kinebase::cli {
+
+struct FeatureOptions {
+  std::string profile = "bonn";
+  std::string feature_set;  // Empty: the profile's own.
+  double rate_hz = 30;
+
+  [[nodiscard]] Profile ParsedProfile() const { return *ParseProfile(profile); }
+  [[nodiscard]] FeatureSet Load() const {
+    return LoadFeatureSet(feature_set.empty() ? profile : feature_set);
+  }
+};
+
+CLI::Option* AddProfileOption(CLI::App& command, std::string& profile, const std::string& text);
+CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set);
+void AddRateOption(CLI::App& command, double& rate_hz);
+
+// The feature set that a template needs: its own if built in, else the file that the user names.
+// Errors  NotFound, naming --feature-set; Mismatch if it is another than the template was made
+// with.
+[[nodiscard]] FeatureSet FeatureSetOfTemplate(const MotionTemplate& motion_template,
+                                              const std::string& feature_set);
+
+}  // namespace kinebase::cli

@@ -1,0 +1,243 @@
+// kinebase search: every place where a motion class happens.
+
+#include <map>
+#include <memory>
+#include <set>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/feature_options.h"
+#include "fmt/format.h"
+#include "kinebase/core/text_scanner.h"
+#include "kinebase/library/takes.h"
+#include "kinebase/search/template_search.h"
+#include "kinebase/templates/quantized_template.h"
+#include "kinebase/templates/template_file.h"
+
+namespace kinebase::cli {
+namespace {
+
+constexpr double kDefaultTau = 0.06;  // Müller & Röder, SCA 2006, Sect. 5.4.
+
+struct SearchCommandOptions {
+  CommonOptions common;
+  std::vector<std::filesystem::path> templates;
+  std::vector<std::filesystem::path> paths;
+  std::optional<double> tau;
+  std::size_t most_hits = 500;
+  bool mirror = false;
+  std::filesystem::path curve;
+  std::string profile;
+  std::string feature_set;
+};
+
+// A template that is ready to be searched for.
+struct Query {
+  MotionTemplate motion_template;
+  FeatureSet features;
+};
+
+// A hit in the terms of its file: frames 1-based, inclusive.
+struct FileHit {
+  std::string template_name;
+  std::filesystem::path file;
+  std::int64_t first_frame = 0;
+  std::int64_t last_frame = 0;
+  double rate_hz = 0;
+  double cost = 0;
+
+  [[nodiscard]] double start_s() const { return static_cast<double>(first_frame - 1) / rate_hz; }
+  [[nodiscard]] double end_s() const { return static_cast<double>(last_frame) / rate_hz; }
+};
+
+// The recordings with the features of one set at one rate; templates that agree in both share them.
+using FeatureKey = std::pair<std::uint64_t, double>;
+
+Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& options) {
+  Query query{.motion_template = ReadTemplate(path)};
+  try {
+    query.features = FeatureSetOfTemplate(query.motion_template, options.feature_set);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.message(), {path});
+  }
+  if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);
+  if (const auto profile = ParseProfile(options.profile)) query.motion_template.matching = *profile;
+  return query;
+}
+
+QuantizedTemplate Quantized(const MotionTemplate& motion_template) {
+  return Quantize(motion_template.matrix, motion_template.quantisation, motion_template.matching);
+}
+
+std::vector<FileHit> SearchOne(const Query& query, const TakeBatch& batch,
+                               const SearchCommandOptions& options,
+                               const ProgressCallback& progress) {
+  std::vector<FeatureMatrix> recordings;
+  for (const TakeFeatures& take : batch.takes) recordings.push_back(take.features);
+  const SearchOptions search{
+      .tau = options.tau.value_or(query.motion_template.tau.value_or(kDefaultTau)),
+      .most_hits = options.most_hits,
+      .threads = options.common.threads,
+      .progress = progress};
+  std::vector<FileHit> hits;
+  for (const Hit& hit : SearchTemplate(Quantized(query.motion_template), recordings, search)) {
+    const TakeFeatures& take = batch.takes[static_cast<std::size_t>(hit.recording)];
+    const FrameRange frames =
+        FramesOfColumns(hit.first, hit.last, take.features.rate_hz, take.rate_hz, take.frame_count);
+    hits.push_back({.template_name = query.motion_template.name,
+                    .file = take.path,
+                    .first_frame = frames.first + 1,
+                    .last_frame = frames.last + 1,
+                    .rate_hz = take.rate_hz,
+                    .cost = hit.cost});
+  }
+  return hits;
+}
+
+std::string CurveTable(const Query& query, const TakeBatch& batch) {
+  std::string text = "file,column,frame,delta,start_frame\n";
+  const QuantizedTemplate quantized = Quantized(query.motion_template);
+  for (const TakeFeatures& take : batch.takes) {
+    const DeltaCurve curve = ComputeDelta(quantized, take.features.columns);
+    const std::string file = CsvField(take.path.string());
+    const auto first_frame_of = [&](int column) {
+      return FramesOfColumns(column, column, take.features.rate_hz, take.rate_hz, take.frame_count)
+                 .first +
+             1;
+    };
+    for (int column = 0; column < take.features.column_count(); ++column) {
+      const auto i = static_cast<std::size_t>(column);
+      text += fmt::format(
+          "{},{},{},{},{}\n", file, column, first_frame_of(column), ToShortestText(curve.delta[i]),
+          curve.start[i] < 0 ? std::string() : std::to_string(first_frame_of(curve.start[i])));
+    }
+  }
+  return text;
+}
+
+Json ToJson(const std::vector<FileHit>& hits, const std::vector<TakeFailure>& failures,
+            std::int64_t frames, double elapsed_s) {
+  Json list = Json::array();
+  for (const FileHit& hit : hits) {
+    list.push_back({{"template", hit.template_name},
+                    {"file", hit.file.string()},
+                    {"first_frame", hit.first_frame},
+                    {"last_frame", hit.last_frame},
+                    {"start_s", hit.start_s()},
+                    {"end_s", hit.end_s()},
+                    {"cost", hit.cost}});
+  }
+  Json json = {{"hits", std::move(list)}, {"scanned_frames", frames}, {"elapsed_s", elapsed_s}};
+  if (!failures.empty()) {
+    Json failed = Json::array();
+    for (const auto& [path, error] : failures) {
+      failed.push_back({{"file", path.string()}, {"message", error.what()}});
+    }
+    json["failed"] = std::move(failed);
+  }
+  return json;
+}
+
+std::string ToText(const std::vector<FileHit>& hits, bool many_templates) {
+  std::vector<std::string> titles = {">cost", ">frames", ">time", "file"};
+  if (many_templates) titles.insert(titles.begin() + 1, "template");
+  TextTable table(std::move(titles));
+  for (const FileHit& hit : hits) {
+    std::vector<std::string> cells = {
+        fmt::format("{:.4f}", hit.cost), fmt::format("{}-{}", hit.first_frame, hit.last_frame),
+        fmt::format("{}-{}", FormatTime(hit.start_s()), FormatTime(hit.end_s())),
+        hit.file.string()};
+    if (many_templates) cells.insert(cells.begin() + 1, hit.template_name);
+    table.Add(std::move(cells));
+  }
+  return table.ToString();
+}
+
+int Run(const SearchCommandOptions& options) {
+  const Stopwatch watch;
+  if (!options.curve.empty()) {
+    if (options.templates.size() != 1) throw UsageError("--curve takes one template");
+    CheckWritable(options.curve, options.common.overwrite());
+  }
+  std::vector<Query> queries;
+  for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
+  std::vector<TakeStretch> stretches;
+  for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
+
+  const ProgressCallback progress = MakeProgress(options.common);
+  std::map<FeatureKey, TakeBatch> batches;
+  std::vector<FileHit> hits;
+  for (const Query& query : queries) {
+    const double rate_hz = query.motion_template.matrix.rate_hz;
+    const auto [entry, is_new] = batches.try_emplace({query.features.hash, rate_hz});
+    TakeBatch& batch = entry->second;
+    if (is_new) {
+      batch = LoadManyTakeFeatures(stretches, query.features, rate_hz, options.common.load,
+                                   options.common.threads, progress);
+    }
+    auto found = SearchOne(query, batch, options, progress);
+    hits.insert(hits.end(), std::make_move_iterator(found.begin()),
+                std::make_move_iterator(found.end()));
+  }
+  std::ranges::stable_sort(hits, {}, &FileHit::cost);
+  if (hits.size() > options.most_hits) hits.resize(options.most_hits);
+
+  const TakeBatch& batch = batches.begin()->second;  // All read the same files.
+  for (const auto& failure : batch.failures) PrintError(failure.error.what());
+  if (batch.takes.empty()) return kCouldNot;
+  std::int64_t frames = 0;
+  for (const TakeFeatures& take : batch.takes) {
+    PrintDiagnostics(options.common, take.path, take.diagnostics);
+    frames += take.frame_count;
+  }
+  if (!options.curve.empty()) {
+    WriteFile(options.curve, CurveTable(queries.front(), batch), options.common.overwrite());
+  }
+  if (options.common.json) {
+    PrintJson(ToJson(hits, batch.failures, frames, watch.seconds()));
+  } else {
+    if (!hits.empty()) Print(ToText(hits, queries.size() > 1));
+    PrintNote(
+        options.common,
+        fmt::format("{} in {} frames of {}, {:.2f} s", FormatCount(std::ssize(hits), "hit", "hits"),
+                    frames, FormatCount(std::ssize(batch.takes), "recording", "recordings"),
+                    watch.seconds()));
+  }
+  return batch.failures.empty() ? kDone : kPartFailed;
+}
+
+}  // namespace
+
+void AddSearchCommand(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<SearchCommandOptions>();
+  CLI::App* command =
+      program.add_subcommand("search", "Find every place where a motion class happens");
+  command->add_option("TEMPLATE", options->templates, "Template files, from learn")->required();
+  command->add_option("--in", options->paths, "Motion files and folders to search")
+      ->required()
+      ->type_name("PATH");
+  command
+      ->add_option("--tau", options->tau,
+                   "Largest cost of a hit (default: the template's own, else 0.06); 1 lists all")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("COST");
+  command->add_option("--top", options->most_hits, "Hits at most")
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_flag("--mirror", options->mirror,
+                    "Look for the motion with left and right exchanged");
+  command
+      ->add_option("--curve", options->curve,
+                   "Also write the cost of the best match that ends at each column (CSV)")
+      ->type_name("FILE");
+  AddProfileOption(*command, options->profile, "Matching by another profile than the template's");
+  AddFeatureSetOption(*command, options->feature_set);
+  AddOutputOptions(*command, options->common);
+  AddThreadsOption(*command, options->common);
+  AddForceOption(*command, options->common);
+  AddLoadOptions(*command, options->common);
+  command->footer("Example:\n  kinebase search squat.template.json --in recordings/ --tau 0.04");
+  command->callback([options, &exit_code] { exit_code = Run(*options); });
+}
+
+}  // namespace kinebase::cli

@@ -1,0 +1,11 @@
+# Everything comes from the distribution's packages: scripts/install-dependencies lists them.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt 9 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus>=3.3)
+pkg_check_modules(libhwy REQUIRED IMPORTED_TARGET libhwy>=1.0)
+pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo>=1.16)

@@ -1,0 +1,80 @@
+// Which takes there are below some paths, and their features.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinebase/core/csv.h"
+#include "kinebase/core/error.h"
+#include "kinebase/core/progress.h"
+#include "kinebase/features/feature_extraction.h"
+#include "kinebase/motion/motion_file.h"
+
+namespace kinebase {
+
+// All motion files that `paths` name: files as they are, folders searched below, sorted by name.
+// A file named twice comes once. Links to folders are followed once each.
+// Errors  NotFound for a path that does not exist or a folder with no motion file in it;
+//         InvalidArgument for a file of an unknown format, naming the known ones.
+[[nodiscard]] std::vector<std::filesystem::path> FindMotionFiles(
+    std::span<const std::filesystem::path> paths);
+
+// A stretch of a take: "take.amc" or "take.amc:120-480" (1-based, inclusive, as people count: the
+// first stored frame is 1).
+struct TakeStretch {
+  std::filesystem::path file;
+  std::int64_t first_frame = 0;  // 0 = whole take.
+  std::int64_t last_frame = 0;
+};
+// A name that exists as a file is taken whole, even if it ends like a stretch.
+// Errors  InvalidArgument: last before first, or 0.
+[[nodiscard]] TakeStretch ParseTakeStretch(const std::string& text);
+
+// The frames of a motion that a stretch names; the motion itself if it names none.
+// Errors  InvalidArgument for a stretch that leaves the take, naming its frames.
+[[nodiscard]] Motion CutToStretch(const Motion& motion, const TakeStretch& stretch);
+
+// A take that was read, with its features.
+struct TakeFeatures {
+  std::filesystem::path path;
+  TakeName name;
+  double rate_hz = 0;  // Of the file.
+  std::int64_t frame_count = 0;
+  FeatureMatrix features;
+  Diagnostics diagnostics;
+};
+
+// Reads one take, or a stretch of it, and extracts its features.
+// Errors  Those of LoadMotion; InvalidArgument for a stretch that leaves the take.
+[[nodiscard]] TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
+                                            double rate_hz, const LoadOptions& options);
+
+struct TakeFailure {
+  std::filesystem::path path;
+  Error error;
+};
+
+struct TakeBatch {
+  std::vector<TakeFeatures> takes;    // Those that could be read, in the order asked for.
+  std::vector<TakeFailure> failures;  // The others.
+};
+
+// The same for many, in parallel. One bad file never stops the batch.
+// Errors  Cancelled.
+[[nodiscard]] TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches,
+                                             const FeatureSet& features, double rate_hz,
+                                             const LoadOptions& options, int threads,
+                                             const ProgressCallback& progress);
+
+// Clips of a list (columns file, class, actor, …) that belong to a class and to one of `actors`
+// (empty: all). Files are looked up by name below the list's folder, then below `folders`.
+// Errors  NotFound: a file of the list that is nowhere; a class that the list lacks, naming those
+//         that there are; MalformedFile.
+[[nodiscard]] std::vector<TakeStretch> ClipsOfClass(const std::filesystem::path& list,
+                                                    const std::string& class_name,
+                                                    std::span<const std::string> actors,
+                                                    std::span<const std::filesystem::path> folders);
+
+}  // namespace kinebase

@@ -1,0 +1,51 @@
+// A motion template as a picture: rows = features by name, columns = time.
+//
+// Read templates/motion_template.h first. docs/pictures.md shows how to read the picture.
+// Source: Müller & Röder, "Motion Templates ...", SCA 2006, Figs. 2 to 6.
+// Departures: weights are bars as high as they are large, as well as coloured; a legend, names of
+// the features and a time axis, which the figures lack.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "kinebase/core/output_file.h"
+#include "kinebase/features/feature_matrix.h"
+#include "kinebase/features/feature_set.h"
+#include "kinebase/pictures/canvas.h"
+#include "kinebase/templates/motion_template.h"
+
+namespace kinebase {
+
+// Black at 0, red at 3/8, yellow at 3/4, white at 1, and straight between: what all performances
+// agree on is black or white, what they vary in is coloured. Lightness grows with the value, so
+// the picture can be read without colours too.
+[[nodiscard]] Color TemplateColor(double value);
+
+// An entry that a quantised template leaves free.
+inline constexpr Color kAnyColor = {150, 150, 150};
+
+struct TemplatePictureOptions {
+  bool quantized = false;  // Black, white and gray for zeros, ones and "any" by the template's δ.
+  bool weights = true;     // Bars above with the weight of each column.
+};
+
+// The time axis follows the weights: a column of weight 2 lasts twice as long as its neighbours,
+// though it is drawn as wide.
+//
+// Errors  Mismatch if `features` is not the template's set; InvalidArgument if the template has no
+//         columns, no rate, or values or weights that no template can have; those of WritePicture.
+void DrawTemplate(const MotionTemplate& motion_template, const FeatureSet& features,
+                  const std::filesystem::path& path, Overwrite overwrite,
+                  const TemplatePictureOptions& options = {});
+
+// A recording's feature matrix the same way: black = 0, white = 1. Where there are more columns
+// than can be told apart (1600), several are drawn as one with the share of ones among them.
+//
+// Errors  Mismatch if the matrix has another number of rows than the set; InvalidArgument if it
+//         has no columns or no rate; those of WritePicture.
+void DrawFeatureMatrix(const FeatureMatrix& matrix, const FeatureSet& features,
+                       const std::string& title, const std::filesystem::path& path,
+                       Overwrite overwrite);
+
+}  // namespace kinebase

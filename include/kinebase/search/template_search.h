@@ -1,0 +1,32 @@
+// One template against many recordings.
+//
+// Read search/hits.h first. library/ says where recordings come from.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kinebase/core/progress.h"
+#include "kinebase/features/feature_matrix.h"
+#include "kinebase/search/hits.h"
+
+namespace kinebase {
+
+struct SearchOptions {
+  double tau = 0.06;
+  std::size_t most_hits = 500;
+  int threads = 0;  // 0 = as many as the hardware has.
+  ProgressCallback progress;
+};
+
+// No path and no suppression crosses from one recording to another.
+//
+// Errors   Mismatch if a recording has another rate or feature count than the template; Cancelled.
+// Cost     O(template columns · columns of all recordings); memory for one curve a thread.
+// Threads  The result does not depend on the thread count.
+[[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                              std::span<const FeatureMatrix> recordings,
+                                              const SearchOptions& options = {});
+
+}  // namespace kinebase

@@ -1,0 +1,78 @@
+// What a class of motion is: for every moment and feature, how consistently the feature held.
+//
+// Read features/feature_matrix.h first. Made by templates/learning.h or templates/template_file.h,
+// used by search/ through templates/quantized_template.h.
+// Source: Müller & Röder, "Motion Templates ...", SCA 2006, Sect. 4.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinebase/features/feature_matrix.h"
+#include "kinebase/features/feature_set.h"
+
+namespace kinebase {
+
+// The matrix itself.
+struct TemplateMatrix {
+  double rate_hz = 0;           // Columns a second.
+  int feature_count = 0;        // Rows; order of the FeatureSet.
+  std::vector<double> values;   // [column × feature] in [0, 1]: 1 = held in every performance.
+  std::vector<double> weights;  // [column] duration in columns of real time; about 1.
+
+  [[nodiscard]] int column_count() const { return static_cast<int>(weights.size()); }
+  [[nodiscard]] std::span<const double> Column(int column) const {
+    return std::span(values).subspan(static_cast<std::size_t>(column) * feature_count,
+                                     feature_count);
+  }
+  [[nodiscard]] double total_weight() const;
+
+  friend bool operator==(const TemplateMatrix&, const TemplateMatrix&) = default;
+};
+
+[[nodiscard]] TemplateMatrix ToTemplateMatrix(const FeatureMatrix& features);  // Weights 1.
+
+// How the pieces of the method are computed: the paper's words, or the authors' toolbox as it ran.
+enum class Profile { kBonn, kPaper };
+
+[[nodiscard]] std::string_view ToString(Profile profile);  // "bonn", "paper".
+[[nodiscard]] std::optional<Profile> ParseProfile(std::string_view text);
+
+// A stretch of a recording that a template was learned from.
+struct TemplateClip {
+  std::string file;              // As given.
+  std::int64_t first_frame = 0;  // 1-based, inclusive; 0 = whole file.
+  std::int64_t last_frame = 0;
+
+  friend bool operator==(const TemplateClip&, const TemplateClip&) = default;
+};
+
+// A template with all that is known of it; what a template file holds.
+struct MotionTemplate {
+  std::string name;
+  Profile learning = Profile::kBonn;
+  Profile matching = Profile::kBonn;
+  std::string feature_set;             // Its name,
+  std::uint64_t feature_set_hash = 0;  // and what it must hash to.
+  TemplateMatrix matrix;
+  std::vector<TemplateClip> clips;
+  int rounds = 0;             // Of learning; 0 = not learned.
+  double quantisation = 0.1;  // δ: values ≤ δ count as 0, values ≥ 1 − δ as 1, others as "any".
+  std::optional<double> tau;  // Its own threshold on the cost of a hit.
+  std::string tau_origin;     // How it was chosen.
+
+  friend bool operator==(const MotionTemplate&, const MotionTemplate&) = default;
+};
+
+// The same motion done with the other side: rows exchanged.
+// Errors  Mismatch if `features` is not the template's set.
+[[nodiscard]] MotionTemplate MirrorTemplate(const MotionTemplate& motion_template,
+                                            const FeatureSet& features);
+
+// Throws Mismatch, naming both, unless the template was made with this feature set.
+void CheckFeatureSet(const MotionTemplate& motion_template, const FeatureSet& features);
+
+}  // namespace kinebase

@@ -1,0 +1,331 @@
+// Reads and writes AMC.
+//
+// One pass over the mapped text. The first frame is read in general and fixes the columns; from
+// then on each line is first compared with the bone that stood in its place in the first frame,
+// which in practice always fits, and looked up by name only where it does not.
+
+#include "kinebase/formats/amc.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "fmt/format.h"
+#include "kinebase/core/error.h"
+#include "kinebase/core/mapped_file.h"
+#include "kinebase/core/text_scanner.h"
+
+namespace kinebase {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+// Takes a number off the front of `text`; false if something else stands there.
+bool TakeNumber(std::string_view& text, double& value) {
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const auto result = std::from_chars(begin, end, value);
+  const bool whole = result.ptr == end || *result.ptr == ' ' || *result.ptr == '\t';
+  if (result.ec == std::errc() && whole) [[likely]] {
+    text.remove_prefix(static_cast<std::size_t>(result.ptr - begin));
+    return true;
+  }
+  // The rare forms: a plus sign, numbers too small for a double.
+  std::string_view rest = text;
+  const auto parsed = ParseDouble(TakeToken(rest));
+  if (!parsed) return false;
+  value = *parsed;
+  text = rest;
+  return true;
+}
+
+void SkipBlanks(std::string_view& text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '\r')) {
+    text.remove_prefix(1);
+  }
+}
+
+class AmcParser {
+ public:
+  AmcParser(std::string_view text, const std::filesystem::path& file, const AmcReadOptions& options)
+      : lines_(text), file_(file), options_(options) {}
+
+  AmcMotion Parse() {
+    while (lines_.Next()) {
+      try {
+        TakeLine();
+      } catch (const Error&) {
+        // A last line without its end that makes no sense was cut off, as the file was.
+        if (lines_.line_is_terminated() || amc_.frame_numbers.size() < 2 || options_.strict) throw;
+        last_line_is_cut_ = true;
+      }
+    }
+    FinishLastFrame();
+    return std::move(amc_);
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& message) const {
+    throw Error(ErrorCode::kMalformedFile, message, {file_, lines_.line_number()});
+  }
+
+  bool in_first_frame() const { return amc_.frame_numbers.size() == 1; }
+
+  void TakeLine() {
+    std::string_view line = lines_.line();
+    SkipBlanks(line);
+    if (line.empty()) return;
+    const char first = line.front();
+    if (IsDigit(first) || first == '+' || first == '-') {
+      BeginFrame(Trim(line));
+    } else if (first == '#' || first == ':') {
+      KeepRemark(lines_.line());
+    } else {
+      TakeBoneLine(line);
+    }
+  }
+
+  void KeepRemark(std::string_view line) {
+    CheckText(line);
+    if (!amc_.frame_numbers.empty()) {
+      amc_.remarks.push_back({amc_.frame_numbers.size() - 1, std::string(line)});
+      return;
+    }
+    amc_.header.emplace_back(line);
+    const std::string_view keyword = Trim(line);
+    if (EqualsIgnoringCase(keyword, ":degrees")) amc_.angle_unit = AmcAngleUnit::kDegrees;
+    if (EqualsIgnoringCase(keyword, ":radians")) amc_.angle_unit = AmcAngleUnit::kRadians;
+    if (EqualsIgnoringCase(keyword, ":force-all-joints-be-3dof")) {
+      amc_.all_bones_have_three_dofs = true;
+    }
+  }
+
+  void CheckText(std::string_view line) const {
+    const bool binary = std::ranges::any_of(line, [](char c) {
+      const auto byte = static_cast<unsigned char>(c);
+      return byte < 0x20 && c != '\t' && c != '\f' && c != '\v';
+    });
+    if (binary) Fail("holds binary data; expected the text of an AMC file");
+  }
+
+  void BeginFrame(std::string_view line) {
+    const auto number = ParseInteger(line);
+    if (!number) {
+      CheckText(line);
+      Fail("expected a frame number or a bone's name, found " + Quoted(line));
+    }
+    if (!amc_.frame_numbers.empty()) {
+      CompleteFrame();
+      const std::int64_t before = amc_.frame_numbers.back();
+      if (*number <= before) {
+        Fail(fmt::format("frame {} after frame {}: frame numbers must grow", *number, before));
+      }
+      if (*number != before + 1) {
+        amc_.diagnostics.push_back(
+            {Severity::kWarning,
+             fmt::format("frame {} follows frame {}: numbers jump, time is taken to go on evenly",
+                         *number, before),
+             lines_.line_number()});
+      }
+    }
+    amc_.frame_numbers.push_back(*number);
+    frame_line_ = lines_.line_number();
+    bones_in_frame_ = 0;
+    if (amc_.frame_numbers.size() > 1) {
+      amc_.values.resize(amc_.values.size() + amc_.column_count);
+      seen_.assign(seen_.size(), false);
+    }
+  }
+
+  void TakeBoneLine(std::string_view line) {
+    if (amc_.frame_numbers.empty()) {
+      CheckText(line);
+      Fail("expected a ':' keyword, a '#' comment or a frame number, found " + Quoted(line));
+    }
+    if (in_first_frame()) {
+      LearnBone(line);
+    } else {
+      ReadBone(line);
+    }
+    ++bones_in_frame_;
+  }
+
+  // A line of the first frame: a new bone with as many columns as there are values.
+  void LearnBone(std::string_view line) {
+    const std::string_view name = TakeToken(line);
+    CheckText(name);
+    AmcBone bone{std::string(name), amc_.values.size(), 0, lines_.line_number()};
+    if (!bone_index_.emplace(bone.name, amc_.bones.size()).second) {
+      Fail(
+          fmt::format("bone {} stands twice in frame {}", Quoted(name), amc_.frame_numbers.back()));
+    }
+    for (SkipBlanks(line); !line.empty(); SkipBlanks(line)) {
+      amc_.values.push_back(Value(line, name));
+      ++bone.column_count;
+    }
+    if (bone.column_count == 0) Fail(fmt::format("bone {} has no values", Quoted(name)));
+    amc_.column_count = amc_.values.size();
+    amc_.bones.push_back(std::move(bone));
+    seen_.push_back(true);
+  }
+
+  void ReadBone(std::string_view line) {
+    const std::size_t index = FindBone(line);
+    const AmcBone& bone = amc_.bones[index];
+    if (seen_[index]) {
+      Fail(fmt::format("bone '{}' stands twice in frame {}", bone.name, amc_.frame_numbers.back()));
+    }
+    line.remove_prefix(bone.name.size());
+    double* const frame = amc_.values.data() + amc_.values.size() - amc_.column_count;
+    std::size_t count = 0;
+    for (SkipBlanks(line); !line.empty(); SkipBlanks(line), ++count) {
+      const double value = Value(line, bone.name);
+      if (count < bone.column_count) frame[bone.first_column + count] = value;
+    }
+    if (count != bone.column_count) {
+      Fail(fmt::format("bone '{}' has {} values; in the first frame it has {}", bone.name, count,
+                       bone.column_count));
+    }
+    seen_[index] = true;
+  }
+
+  // Index of the bone that `line` starts with: most likely the one in its place in the first frame.
+  std::size_t FindBone(std::string_view line) const {
+    if (bones_in_frame_ < amc_.bones.size()) {
+      const std::string& expected = amc_.bones[bones_in_frame_].name;
+      if (line.starts_with(expected) &&
+          (line.size() == expected.size() || line[expected.size()] == ' ' ||
+           line[expected.size()] == '\t')) {
+        return bones_in_frame_;
+      }
+    }
+    const std::string_view name = TakeToken(line);
+    const auto found = bone_index_.find(std::string(name));
+    if (found == bone_index_.end()) {
+      CheckText(name);
+      Fail(fmt::format("bone {} is not in the first frame", Quoted(name)));
+    }
+    return found->second;
+  }
+
+  double Value(std::string_view& line, std::string_view bone) const {
+    double value = kMissing;
+    if (TakeNumber(line, value)) return value;
+    std::string_view rest = line;
+    const std::string_view token = TakeToken(rest);
+    CheckText(token);
+    Fail(fmt::format("a value of bone '{}' is not a number: {}", bone, Quoted(token)));
+  }
+
+  // At the next frame number: the frame before it must have every bone.
+  void CompleteFrame() const {
+    if (amc_.bones.empty()) {
+      Fail(fmt::format("frame {} has no bones", amc_.frame_numbers.back()));
+    }
+    const auto missing = std::ranges::find(seen_, false);
+    if (missing == seen_.end()) return;
+    throw Error(ErrorCode::kMalformedFile,
+                fmt::format("frame {} lacks bone '{}'", amc_.frame_numbers.back(),
+                            amc_.bones[static_cast<std::size_t>(missing - seen_.begin())].name),
+                {file_, frame_line_});
+  }
+
+  // A file that was cut off ends in the middle of a frame, most often of a line.
+  void FinishLastFrame() {
+    if (amc_.frame_numbers.empty()) {
+      throw Error(ErrorCode::kMalformedFile, "has no frames", {file_});
+    }
+    const bool whole = !amc_.bones.empty() && std::ranges::find(seen_, false) == seen_.end();
+    const std::int64_t number = amc_.frame_numbers.back();
+    if (whole && !last_line_is_cut_) return;
+    if (!whole && in_first_frame()) {
+      throw Error(ErrorCode::kMalformedFile,
+                  fmt::format("has no whole frame: frame {} is cut off", number),
+                  {file_, frame_line_});
+    }
+    if (options_.strict) {
+      throw Error(
+          ErrorCode::kMalformedFile,
+          fmt::format("the last frame, {}, is cut off (without --strict it is left out)", number),
+          {file_, frame_line_});
+    }
+    if (!whole) DropLastFrame();
+    amc_.diagnostics.push_back(
+        {Severity::kWarning,
+         whole ? "the file ends in the middle of a frame number; it may be cut off"
+               : fmt::format("the last frame, {}, is cut off; it is left out", number),
+         whole ? lines_.line_number() : frame_line_});
+  }
+
+  void DropLastFrame() {
+    amc_.frame_numbers.pop_back();
+    amc_.values.resize(amc_.values.size() - amc_.column_count);
+    std::erase_if(amc_.remarks, [&](const AmcMotion::Remark& remark) {
+      return remark.frame >= amc_.frame_numbers.size();
+    });
+  }
+
+  LineScanner lines_;
+  const std::filesystem::path& file_;
+  const AmcReadOptions& options_;
+  AmcMotion amc_;
+  std::unordered_map<std::string, std::size_t> bone_index_;
+  std::vector<bool> seen_;  // [bone] in the current frame.
+  std::size_t bones_in_frame_ = 0;
+  std::int64_t frame_line_ = 0;
+  bool last_line_is_cut_ = false;
+};
+
+bool SameValue(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+}  // namespace
+
+AmcMotion ParseAmc(std::string_view text, const std::filesystem::path& file,
+                   const AmcReadOptions& options) {
+  if (text.empty()) {
+    throw Error(ErrorCode::kMalformedFile, "is empty; expected an AMC motion", {file});
+  }
+  return AmcParser(text, file, options).Parse();
+}
+
+AmcMotion ReadAmc(const std::filesystem::path& path, const AmcReadOptions& options) {
+  const MappedFile file(path);
+  return ParseAmc(file.text(), path, options);
+}
+
+std::string FormatAmc(const AmcMotion& amc) {
+  std::string out;
+  out.reserve(amc.values.size() * 10);
+  for (const auto& line : amc.header) out += line + '\n';
+  auto remark = amc.remarks.begin();
+  for (std::size_t frame = 0; frame < amc.frame_count(); ++frame) {
+    out += std::to_string(amc.frame_numbers[frame]) + '\n';
+    const auto values = amc.Frame(frame);
+    for (const AmcBone& bone : amc.bones) {
+      out += bone.name;
+      for (const double value : values.subspan(bone.first_column, bone.column_count)) {
+        out += ' ';
+        AppendShortestText(out, value);
+      }
+      out += '\n';
+    }
+    for (; remark != amc.remarks.end() && remark->frame == frame; ++remark) {
+      out += remark->text + '\n';
+    }
+  }
+  return out;
+}
+
+bool operator==(const AmcMotion& a, const AmcMotion& b) {
+  return a.header == b.header && a.angle_unit == b.angle_unit &&
+         a.all_bones_have_three_dofs == b.all_bones_have_three_dofs && a.bones == b.bones &&
+         a.column_count == b.column_count && a.frame_numbers == b.frame_numbers &&
+         std::ranges::equal(a.values, b.values, SameValue) && a.remarks == b.remarks;
+}
+
+}  // namespace kinebase

@@ -1,0 +1,232 @@
+#include "kinebase/library/takes.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "fmt/format.h"
+#include "fmt/ranges.h"
+#include "kinebase/core/mapped_file.h"
+#include "kinebase/core/parallel.h"
+#include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/kinematics.h"
+#include "kinebase/motion/motion_editing.h"
+
+namespace kinebase {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string KnownFormats() {
+  std::string text;
+  for (const MotionFormat& format : MotionFormats()) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", format.extension, format.name);
+  }
+  return text;
+}
+
+std::string JoinPaths(const std::vector<fs::path>& paths) {
+  std::string text;
+  for (const fs::path& path : paths) text += (text.empty() ? "" : ", ") + path.string();
+  return text;
+}
+
+// All regular files below a folder for which `wanted` holds. A folder that is reached twice,
+// through links, is entered once; one that cannot be read is passed over.
+template <typename Wanted>
+std::vector<fs::path> FilesBelow(const fs::path& folder, Wanted wanted) {
+  std::vector<fs::path> files;
+  std::vector<fs::path> open = {folder};
+  std::set<fs::path> entered;
+  while (!open.empty()) {
+    const fs::path current = std::move(open.back());
+    open.pop_back();
+    std::error_code error;
+    const fs::path real = fs::canonical(current, error);
+    if (error || !entered.insert(real).second) continue;
+    for (const auto& entry : fs::directory_iterator(current, error)) {
+      std::error_code ignored;
+      if (entry.is_directory(ignored)) {
+        open.push_back(entry.path());
+      } else if (entry.is_regular_file(ignored) && wanted(entry.path())) {
+        files.push_back(entry.path());
+      }
+    }
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+// Where the files of a list are: by name below its folder, then below others.
+class FileIndex {
+ public:
+  explicit FileIndex(std::span<const fs::path> folders) {
+    for (const fs::path& folder : folders) {
+      for (fs::path& file : FilesBelow(
+               folder, [](const fs::path& path) { return FindMotionFormat(path) != nullptr; })) {
+        std::string name = file.filename().string();
+        files_.try_emplace(std::move(name), std::move(file));  // Earlier folders win.
+      }
+    }
+  }
+
+  const fs::path* Find(const std::string& name) const {
+    const auto found = files_.find(name);
+    return found == files_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  std::map<std::string, fs::path> files_;
+};
+
+}  // namespace
+
+std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) {
+    if (!fs::exists(path)) throw Error(ErrorCode::kNotFound, "does not exist", {path});
+    if (fs::is_directory(path)) {
+      auto below =
+          FilesBelow(path, [](const fs::path& file) { return FindMotionFormat(file) != nullptr; });
+      if (below.empty()) {
+        throw Error(ErrorCode::kNotFound,
+                    "holds no motion file; looked for " + KnownFormats() + " in it and below",
+                    {path});
+      }
+      files.insert(files.end(), below.begin(), below.end());
+    } else if (FindMotionFormat(path) == nullptr) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  fmt::format("is no motion file that Kinebase knows; known: {}", KnownFormats()),
+                  {path});
+    } else {
+      files.push_back(path);
+    }
+  }
+  std::set<fs::path> seen;
+  std::erase_if(files, [&](const fs::path& file) {
+    std::error_code ignored;
+    return !seen.insert(fs::weakly_canonical(file, ignored)).second;
+  });
+  return files;
+}
+
+TakeStretch ParseTakeStretch(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || fs::exists(text)) return {.file = text};
+  const std::string_view range = std::string_view(text).substr(colon + 1);
+  const std::size_t dash = range.find('-');
+  const auto first = ParseInteger(range.substr(0, dash));
+  const auto last =
+      dash == std::string_view::npos ? std::nullopt : ParseInteger(range.substr(dash + 1));
+  if (!first || !last) return {.file = text};
+  if (*first < 1 || *last < *first) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("'{}': a stretch is first-last with 1 ≤ first ≤ last", text));
+  }
+  return {.file = text.substr(0, colon), .first_frame = *first, .last_frame = *last};
+}
+
+Motion CutToStretch(const Motion& motion, const TakeStretch& stretch) {
+  if (stretch.first_frame == 0) return motion;
+  if (stretch.last_frame > motion.frame_count) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("frames {} to {} are asked for; it has 1 to {}", stretch.first_frame,
+                            stretch.last_frame, motion.frame_count),
+                {stretch.file});
+  }
+  return CutMotion(motion, static_cast<int>(stretch.first_frame) - 1,
+                   static_cast<int>(stretch.last_frame) - 1);
+}
+
+TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
+                              double rate_hz, const LoadOptions& options) {
+  LoadedMotion loaded = LoadMotion(stretch.file, options);
+  const Motion motion = CutToStretch(loaded.motion, stretch);
+  TakeFeatures take{.path = stretch.file,
+                    .name = std::move(loaded.name),
+                    .rate_hz = motion.rate_hz,
+                    .frame_count = motion.frame_count};
+  take.features = ExtractFeatures(StandardJoints(motion), features, rate_hz);
+  take.diagnostics = std::move(loaded.diagnostics);
+  return take;
+}
+
+TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const FeatureSet& features,
+                               double rate_hz, const LoadOptions& options, int threads,
+                               const ProgressCallback& progress) {
+  std::vector<std::optional<TakeFeatures>> takes(stretches.size());
+  std::vector<std::optional<Error>> errors(stretches.size());
+  std::mutex mutex;
+  std::size_t done = 0;
+  ParallelFor(stretches.size(), threads, [&](std::size_t i) {
+    try {
+      takes[i] = LoadTakeFeatures(stretches[i], features, rate_hz, options);
+    } catch (const Error& error) {
+      errors[i] = error;
+    }
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (progress && !progress("reading", done, stretches.size())) {
+      throw Error(ErrorCode::kCancelled, "cancelled");
+    }
+  });
+  TakeBatch batch;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    if (takes[i]) {
+      batch.takes.push_back(std::move(*takes[i]));
+    } else {
+      batch.failures.push_back({stretches[i].file, *errors[i]});
+    }
+  }
+  return batch;
+}
+
+std::vector<TakeStretch> ClipsOfClass(const fs::path& list, const std::string& class_name,
+                                      std::span<const std::string> actors,
+                                      std::span<const fs::path> folders) {
+  const CsvTable table = ParseCsv(MappedFile(list).text(), list);
+  const std::size_t file_column = table.Column("file");
+  const std::size_t class_column = table.Column("class");
+  const auto actor_column = table.FindColumn("actor");
+  if (!actor_column && !actors.empty()) (void)table.Column("actor");  // Says that it is missing.
+
+  std::vector<fs::path> places = {fs::absolute(list).parent_path()};
+  places.insert(places.end(), folders.begin(), folders.end());
+  const FileIndex index(places);
+  std::vector<TakeStretch> clips;
+  std::set<std::string> classes;
+  bool class_is_there = false;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    classes.insert(row[class_column]);
+    if (row[class_column] != class_name) continue;
+    class_is_there = true;
+    if (!actors.empty() && std::ranges::find(actors, row[*actor_column]) == actors.end()) continue;
+    const fs::path* file = index.Find(fs::path(row[file_column]).filename().string());
+    if (file == nullptr) {
+      throw Error(ErrorCode::kNotFound,
+                  fmt::format("'{}' is not below {}; name its folder with --in", row[file_column],
+                              JoinPaths(places)),
+                  {list, table.lines[i]});
+    }
+    clips.push_back({.file = *file});
+  }
+  if (!class_is_there) {
+    throw Error(
+        ErrorCode::kNotFound,
+        fmt::format("has no class '{}'; there are: {}", class_name, fmt::join(classes, ", ")),
+        {list});
+  }
+  if (clips.empty()) {
+    throw Error(
+        ErrorCode::kNotFound,
+        fmt::format("class '{}' has no clip of actors {}", class_name, fmt::join(actors, ", ")),
+        {list});
+  }
+  return clips;
+}
+
+}  // namespace kinebase

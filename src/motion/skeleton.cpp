@@ -1,0 +1,127 @@
+#include "kinebase/motion/skeleton.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "fmt/format.h"
+#include "kinebase/core/error.h"
+#include "kinebase/core/text_scanner.h"
+#include "motion/name_map.h"
+
+namespace kinebase {
+namespace {
+
+// The axes in the order in which an Euler order turns about them; fixed axes, so the last one named
+// stands leftmost in the product.
+constexpr std::array<std::array<int, 3>, 6> kEulerAxes = {
+    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+constexpr std::array<std::string_view, 6> kEulerNames = {"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"};
+
+Eigen::Quaterniond AboutAxis(int axis, double angle_rad) {
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  direction[axis] = std::sin(angle_rad / 2);
+  return {std::cos(angle_rad / 2), direction.x(), direction.y(), direction.z()};
+}
+
+void CheckJoint(const std::vector<Joint>& joints, int index) {
+  const Joint& joint = joints[static_cast<std::size_t>(index)];
+  const auto fail = [&](std::string_view problem) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("joint {} ('{}') {}", index, joint.bone_name, problem));
+  };
+  if (index == 0 && joint.parent != -1) fail("comes first and must be the root");
+  if (index > 0 && joint.parent < 0) fail("has no parent; only the first joint may be a root");
+  if (joint.parent >= index) fail("comes before its parent");
+  if (!joint.limits.empty() && joint.limits.size() != joint.dofs.size()) {
+    fail("needs no limits, or one for each degree of freedom");
+  }
+}
+
+}  // namespace
+
+std::optional<EulerOrder> ParseEulerOrder(std::string_view text) {
+  for (std::size_t i = 0; i < kEulerNames.size(); ++i) {
+    if (EqualsIgnoringCase(text, kEulerNames[i])) return static_cast<EulerOrder>(i);
+  }
+  return std::nullopt;
+}
+
+std::string_view ToString(EulerOrder order) { return kEulerNames[static_cast<std::size_t>(order)]; }
+
+Eigen::Quaterniond EulerToQuaternion(const Eigen::Vector3d& angles_rad, EulerOrder order) {
+  const auto& [first, second, third] = kEulerAxes[static_cast<std::size_t>(order)];
+  return AboutAxis(third, angles_rad[third]) * AboutAxis(second, angles_rad[second]) *
+         AboutAxis(first, angles_rad[first]);
+}
+
+// With the axes i, j, k of the order and R = R_k · R_j · R_i, row k of R holds the sine of the
+// middle angle in column i; the sign is that of the permutation (i, j, k).
+Eigen::Vector3d QuaternionToEuler(const Eigen::Quaterniond& rotation, EulerOrder order) {
+  const auto& [i, j, k] = kEulerAxes[static_cast<std::size_t>(order)];
+  const double sign = (j - i + 3) % 3 == 1 ? 1 : -1;
+  const Eigen::Matrix3d r = rotation.toRotationMatrix();
+  const double cosine = std::hypot(r(i, i), r(j, i));
+  Eigen::Vector3d angles;
+  angles[j] = std::atan2(-sign * r(k, i), cosine);
+  constexpr double kGimbalLock =
+      1e-9;  // Below, the outer angles turn about one axis: split is free.
+  if (cosine > kGimbalLock) {
+    angles[i] = std::atan2(sign * r(k, j), r(k, k));
+    angles[k] = std::atan2(sign * r(j, i), r(i, i));
+  } else {
+    angles[i] = 0;
+    angles[k] = std::atan2(-sign * r(i, j), r(j, j));
+  }
+  return angles;
+}
+
+Skeleton::Skeleton(std::vector<Joint> joints, SkeletonSource source,
+                   const Eigen::Vector3d& root_position_cm,
+                   const Eigen::Vector3d& root_orientation_rad)
+    : joints_(std::move(joints)),
+      source_(std::move(source)),
+      root_position_cm_(root_position_cm),
+      root_orientation_rad_(root_orientation_rad) {
+  if (joints_.empty()) throw Error(ErrorCode::kInvalidArgument, "a skeleton needs a joint");
+  children_.resize(joints_.size());
+  std::set<std::string> names;
+  for (int i = 0; i < joint_count(); ++i) {
+    CheckJoint(joints_, i);
+    const Joint& joint = joints_[i];
+    if (!names.insert(joint.bone_name).second) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  fmt::format("two bones named '{}'", joint.bone_name));
+    }
+    if (i > 0) children_[joint.parent].push_back(i);
+    axes_.push_back(EulerToQuaternion(joint.axis_rad, EulerOrder::kXyz));
+    (joint.dofs.empty() ? unanimated_ : animated_).push_back(i);
+  }
+  // A chain goes on with the first child; each further child begins one at its parent.
+  for (int i = 0; i < joint_count(); ++i) {
+    const bool begins = i == 0 || children_[joints_[i].parent].front() != i;
+    if (!begins && joint_count() > 1) continue;
+    std::vector<int> chain;
+    if (i > 0) chain.push_back(joints_[i].parent);
+    for (int j = i;; j = children_[j].front()) {
+      chain.push_back(j);
+      if (children_[j].empty()) break;
+    }
+    chains_.push_back(std::move(chain));
+  }
+  name_map_ = internal::BuildNameMap(joints_);
+}
+
+std::optional<int> Skeleton::FindBone(std::string_view bone_name) const {
+  for (int i = 0; i < joint_count(); ++i) {
+    if (EqualsIgnoringCase(joints_[i].bone_name, bone_name)) return i;
+  }
+  return std::nullopt;
+}
+
+Eigen::Quaterniond Skeleton::root_orientation() const {
+  return EulerToQuaternion(root_orientation_rad_, joints_.front().euler_order);
+}
+
+}  // namespace kinebase

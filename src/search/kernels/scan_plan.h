@@ -1,0 +1,54 @@
+// A quantised template prepared for the vector kernel, and the kernel's entry.
+//
+// Mismatches are counted four features at a time: for every template column and every nibble of a
+// feature word, a table of 16 bytes says how many of the four features disagree. Byte shuffles look
+// up 16 to 64 columns of the recording at once; a nibble that a column leaves free costs nothing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kinebase/templates/quantized_template.h"
+
+namespace kinebase::internal {
+
+struct NibbleTable {
+  alignas(16) std::array<std::uint8_t, 16> mismatches;  // [value of the nibble]
+  std::size_t nibble = 0;                               // Which: 0 = features 1 to 4.
+};
+
+struct ScanRow {
+  double scale = 0;  // Cost of one mismatch.
+  std::span<const NibbleTable> tables;
+};
+
+// Immutable; one plan serves all threads.
+class ScanPlan {
+ public:
+  explicit ScanPlan(const QuantizedTemplate& motion_template);
+  ScanPlan(const ScanPlan&) = delete;
+  ScanPlan& operator=(const ScanPlan&) = delete;
+
+  [[nodiscard]] const std::vector<ScanRow>& rows() const { return rows_; }
+  [[nodiscard]] const std::vector<std::size_t>& nibbles() const { return nibbles_; }
+  [[nodiscard]] bool doubles_two_one() const { return doubles_two_one_; }
+
+ private:
+  std::vector<NibbleTable> tables_;
+  std::vector<ScanRow> rows_;         // One for each template column.
+  std::vector<std::size_t> nibbles_;  // Those that any column looks at.
+  bool doubles_two_one_;              // Profile bonn.
+};
+
+// Δ and starts of the columns [begin, end) of a recording; the same whatever the cut.
+//
+// columns  The whole recording.
+// delta    [end − begin], out.
+// start    [end − begin], out: columns of the recording.
+void ScanRange(const ScanPlan& plan, std::span<const std::uint64_t> columns, std::size_t begin,
+               std::size_t end, double* delta, std::int32_t* start);
+
+}  // namespace kinebase::internal

@@ -1,0 +1,224 @@
+#include "kinebase/synth/synthetic_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmt/format.h"
+#include "fmt/ranges.h"
+#include "kinebase/core/error.h"
+#include "synth/performer.h"
+
+namespace kinebase {
+namespace {
+
+using internal::FloorFrame;
+using internal::Manner;
+using internal::MotionClass;
+using internal::Performer;
+using internal::Pose;
+using internal::Random;
+using internal::Timeline;
+using internal::Tremor;
+
+constexpr double kRateHz = 120;
+
+const MotionClass& FindClass(std::string_view name) {
+  const auto classes = internal::MotionClasses();
+  const auto found = std::ranges::find(classes, name, &MotionClass::name);
+  if (found == classes.end()) {
+    throw Error(ErrorCode::kNotFound, fmt::format("no synthetic motion class '{}'; there are {}",
+                                                  name, fmt::join(SyntheticClasses(), ", ")));
+  }
+  return *found;
+}
+
+// Where a timeline leaves its performer.
+FloorFrame FrameAfter(const FloorFrame& frame, const Timeline& timeline, double leg_length_cm) {
+  const double heading = frame.heading_deg * std::numbers::pi / 180;
+  const double way_cm = timeline.end_forward * leg_length_cm;
+  return {.x_cm = frame.x_cm + way_cm * std::sin(heading),
+          .z_cm = frame.z_cm + way_cm * std::cos(heading),
+          .heading_deg = frame.heading_deg + timeline.end_turn_deg};
+}
+
+// The largest value within ±kReach frames, then a weighted mean over as many: a smooth curve that
+// is nowhere below `needed`.
+std::vector<double> SmoothEnvelope(const std::vector<double>& needed) {
+  constexpr int kReach = 11;
+  const int count = static_cast<int>(needed.size());
+  const auto inside = [&](int i) { return static_cast<std::size_t>(std::clamp(i, 0, count - 1)); };
+  std::vector<double> highest(needed.size());
+  for (int i = 0; i < count; ++i) {
+    double& value = highest[inside(i)];
+    value = needed[inside(i)];
+    for (int k = -kReach; k <= kReach; ++k) value = std::max(value, needed[inside(i + k)]);
+  }
+  std::vector<double> smooth(needed.size());
+  for (int i = 0; i < count; ++i) {
+    double sum = 0;
+    double weights = 0;
+    for (int k = -kReach; k <= kReach; ++k) {
+      const double u = static_cast<double>(k) / (kReach + 1);
+      const double weight = (1 - u * u) * (1 - u * u);
+      sum += weight * highest[inside(i + k)];
+      weights += weight;
+    }
+    smooth[inside(i)] = sum / weights;
+  }
+  return smooth;
+}
+
+class Recorder {
+ public:
+  Recorder(const Performer& performer, Tremor tremor)
+      : figure_(performer.figure()), tremor_(std::move(tremor)) {}
+
+  // Frames of a timeline from `first_s` to `last_s` of its own time.
+  void Record(const Timeline& timeline, double first_s, double last_s, const FloorFrame& frame) {
+    const int frames = static_cast<int>(std::floor((last_s - first_s) * kRateHz)) + 1;
+    for (int i = 0; i < frames; ++i) {
+      Pose pose = timeline.At(first_s + i / kRateHz);
+      tremor_.AddTo(pose, frame_count() / kRateHz);
+      poses_.push_back(pose);
+      frames_.push_back(frame);
+    }
+  }
+
+  [[nodiscard]] int frame_count() const { return static_cast<int>(poses_.size()); }
+
+  [[nodiscard]] Motion Develop() const {
+    Motion motion{.skeleton = figure_.skeleton(), .rate_hz = kRateHz, .frame_count = frame_count()};
+    std::vector<double> drops;
+    for (const Pose& pose : poses_) drops.push_back(figure_.PelvisDrop(pose));
+    drops = SmoothEnvelope(drops);
+    const auto joints = static_cast<std::size_t>(motion.joint_count());
+    motion.root_position_cm.resize(poses_.size());
+    motion.rotations.resize(poses_.size() * joints);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      figure_.SetPose(poses_[i], frames_[i], drops[i], motion.root_position_cm[i],
+                      motion.rotations.data() + i * joints);
+    }
+    return motion;
+  }
+
+ private:
+  const internal::Figure& figure_;
+  Tremor tremor_;
+  std::vector<Pose> poses_;
+  std::vector<FloorFrame> frames_;
+};
+
+// Puts timelines one after the other into a long take.
+class TakeBuilder {
+ public:
+  TakeBuilder(const SyntheticActor& actor, int number, std::uint64_t seed)
+      : performer_(actor, seed),
+        random_(performer_.Stream("take", static_cast<std::uint64_t>(number))),
+        recorder_(performer_, Tremor(Random({random_.Next()}), actor.noise_deg)) {
+    frame_.heading_deg = random_.Uniform(-180, 180);
+    Append(internal::BuildTPose(NextManner("tPose"), false));
+    Pause();
+  }
+
+  void AppendClass(const MotionClass& motion_class) {
+    const Timeline timeline = motion_class.build(NextManner(motion_class.name));
+    const int begin = recorder_.frame_count();
+    Append(timeline);
+    const auto frame_at = [&](double time_s) {
+      return std::min(begin + static_cast<int>(std::lround(time_s * kRateHz)),
+                      recorder_.frame_count() - 1) + 1;
+    };
+    segments_.push_back({std::string(motion_class.name), frame_at(timeline.core_first_s),
+                         frame_at(timeline.core_last_s)});
+    Pause();
+    if (random_.Uniform(0, 1) < 0.5) Turn();
+  }
+
+  SyntheticTake Finish() {
+    Append(internal::BuildTPose(NextManner("tPose"), true));
+    return {.motion = recorder_.Develop(), .segments = std::move(segments_)};
+  }
+
+  void Shuffle(std::vector<const MotionClass*>& classes) {
+    for (std::size_t i = classes.size(); i > 1; --i) {
+      std::swap(classes[i - 1], classes[random_.Below(i)]);
+    }
+  }
+
+ private:
+  Manner NextManner(std::string_view name) {
+    return performer_.MannerOf(name, Random({random_.Next()}));
+  }
+
+  void Append(const Timeline& timeline) {
+    // The last instant is the first of what follows.
+    recorder_.Record(timeline, 0, timeline.duration_s() - 1 / kRateHz, frame_);
+    frame_ = FrameAfter(frame_, timeline, performer_.figure().leg_length_cm());
+  }
+
+  void Pause() {
+    Append(internal::BuildStand(NextManner("stand"), random_.Uniform(0.35, 1.2)));
+  }
+
+  void Turn() {
+    const double angle_deg = random_.Uniform(25, 65) * (random_.Uniform(0, 1) < 0.5 ? -1 : 1);
+    Append(internal::BuildTurnOnTheSpot(NextManner("turn"), angle_deg));
+    Pause();
+  }
+
+  Performer performer_;
+  Random random_;
+  Recorder recorder_;
+  FloorFrame frame_;
+  std::vector<SyntheticSegment> segments_;
+};
+
+}  // namespace
+
+std::vector<std::string> SyntheticClasses() {
+  std::vector<std::string> names;
+  for (const MotionClass& motion_class : internal::MotionClasses()) {
+    names.emplace_back(motion_class.name);
+  }
+  return names;
+}
+
+Motion MakeSyntheticClip(const std::string& class_name, const SyntheticActor& actor,
+                         int repetition, std::uint64_t seed) {
+  const MotionClass& motion_class = FindClass(class_name);
+  const Performer performer(actor, seed);
+  Random random = performer.Stream("clip " + class_name, static_cast<std::uint64_t>(repetition));
+  const Manner manner = performer.MannerOf(class_name, Random({random.Next()}));
+  const Timeline timeline = motion_class.build(manner);
+  Recorder recorder(performer, Tremor(Random({random.Next()}), actor.noise_deg));
+  const FloorFrame frame{.x_cm = random.Uniform(-100, 100),
+                         .z_cm = random.Uniform(-100, 100),
+                         .heading_deg = random.Uniform(-180, 180)};
+  // Nobody cuts at the very frame.
+  const double first_s = std::max(timeline.core_first_s - random.Uniform(0, 0.1), 0.0);
+  const double last_s =
+      std::min(timeline.core_last_s + random.Uniform(0, 0.1), timeline.duration_s());
+  recorder.Record(timeline, first_s, last_s, frame);
+  return recorder.Develop();
+}
+
+SyntheticTake MakeSyntheticTake(const SyntheticActor& actor, int clips, int number,
+                                std::uint64_t seed, const std::vector<std::string>& classes) {
+  std::vector<const MotionClass*> choice;
+  for (const std::string& name : classes.empty() ? SyntheticClasses() : classes) {
+    choice.push_back(&FindClass(name));
+  }
+  TakeBuilder builder(actor, number, seed);
+  for (int i = 0; i < clips; ++i) {
+    const std::size_t place = static_cast<std::size_t>(i) % choice.size();
+    if (place == 0) builder.Shuffle(choice);
+    builder.AppendClass(*choice[place]);
+  }
+  return builder.Finish();
+}
+
+}  // namespace kinebase

@@ -1,0 +1,375 @@
+// Template files; docs/template-file.md describes every field.
+#include "kinebase/templates/template_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <utility>
+
+#include "fmt/format.h"
+#include "kinebase/core/error.h"
+#include "kinebase/core/mapped_file.h"
+#include "kinebase/core/text_scanner.h"
+#include "nlohmann/json.hpp"
+#include "templates/matrix_check.h"
+
+namespace kinebase {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view kFormat = "kinebase-template";
+constexpr int kVersion = 1;
+
+// A value for a message, not longer than a line can bear.
+std::string ShownValue(const json& value) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+// One object of the file, with its place for messages: "clips[2].file".
+class ObjectReader {
+ public:
+  ObjectReader(const json& object, std::string path, const std::filesystem::path& file)
+      : object_(object), path_(std::move(path)), file_(file) {
+    if (!object_.is_object()) Fail(path_.empty() ? "the file" : path_, object_, "an object");
+  }
+
+  [[noreturn]] static void FailWith(const std::string& message, const std::filesystem::path& file) {
+    throw Error(ErrorCode::kMalformedFile, message, {.file = file});
+  }
+
+  // A misspelt field would otherwise be lost without a word.
+  void AllowOnly(std::initializer_list<std::string_view> names) const {
+    for (const auto& [key, value] : object_.items()) {
+      if (std::ranges::find(names, key) == names.end()) {
+        FailWith(fmt::format("unknown field {}; expected one of {}", Quoted(NameOf(key)),
+                             fmt::join(names, ", ")),
+                 file_);
+      }
+    }
+  }
+
+  [[nodiscard]] std::string String(std::string_view key) const {
+    const json& value = At(key);
+    if (!value.is_string()) Fail(NameOf(key), value, "a string");
+    return value.get<std::string>();
+  }
+
+  [[nodiscard]] double Number(std::string_view key) const {
+    const json& value = At(key);
+    if (!value.is_number()) Fail(NameOf(key), value, "a number");
+    return value.get<double>();
+  }
+
+  [[nodiscard]] std::int64_t Integer(std::string_view key, std::int64_t least,
+                                     std::int64_t most) const {
+    const json& value = At(key);
+    const std::string expected = most == std::numeric_limits<std::int64_t>::max()
+                                     ? fmt::format("a whole number of at least {}", least)
+                                     : fmt::format("a whole number from {} to {}", least, most);
+    if (!value.is_number_integer()) Fail(NameOf(key), value, expected);
+    const bool too_large =
+        value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(most);
+    const std::int64_t number = too_large ? most : value.get<std::int64_t>();
+    if (too_large || number < least || number > most) Fail(NameOf(key), value, expected);
+    return number;
+  }
+
+  [[nodiscard]] const json& Array(std::string_view key) const {
+    const json& value = At(key);
+    if (!value.is_array()) Fail(NameOf(key), value, "a list");
+    return value;
+  }
+
+  [[nodiscard]] ObjectReader Object(std::string_view key) const {
+    return {At(key), NameOf(key), file_};
+  }
+
+  [[nodiscard]] bool IsNull(std::string_view key) const { return At(key).is_null(); }
+
+  [[noreturn]] void FailAt(std::string_view key, std::string_view expected) const {
+    Fail(NameOf(key), At(key), expected);
+  }
+
+  [[nodiscard]] std::string NameOf(std::string_view key) const {
+    return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+  }
+
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+
+ private:
+  [[nodiscard]] const json& At(std::string_view key) const {
+    const auto field = object_.find(key);
+    if (field == object_.end()) FailWith(fmt::format("field '{}' is missing", NameOf(key)), file_);
+    return *field;
+  }
+
+  [[noreturn]] void Fail(std::string_view name, const json& value,
+                         std::string_view expected) const {
+    FailWith(fmt::format("{} is {}; expected {}", name, ShownValue(value), expected), file_);
+  }
+
+  const json& object_;
+  std::string path_;
+  const std::filesystem::path& file_;
+};
+
+json ParseJson(std::string_view text, const std::filesystem::path& file) {
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    // The library counts bytes from 1 and names the one after the trouble.
+    const std::int64_t byte = static_cast<std::int64_t>(error.byte) - 1;
+    throw Error(ErrorCode::kMalformedFile, "not JSON: the file is damaged or of another kind",
+                {.file = file, .line = 0, .byte = std::max<std::int64_t>(byte, 0)});
+  } catch (const json::out_of_range&) {
+    throw Error(ErrorCode::kMalformedFile, "a number is too large for a double", {.file = file});
+  }
+}
+
+void CheckHeader(const ObjectReader& root) {
+  if (root.String("format") != kFormat) {
+    root.FailAt("format", fmt::format("\"{}\"; this is no template file", kFormat));
+  }
+  const std::int64_t version = root.Integer("version", 1, std::numeric_limits<std::int64_t>::max());
+  if (version > kVersion) {
+    throw Error(ErrorCode::kMismatch,
+                fmt::format("template file of version {}, this program reads up to version {}; "
+                            "open it with a newer Kinebase",
+                            version, kVersion),
+                {.file = root.file()});
+  }
+}
+
+Profile ReadProfile(const ObjectReader& root, std::string_view key) {
+  const std::optional<Profile> profile = ParseProfile(root.String(key));
+  if (!profile) root.FailAt(key, "\"bonn\" or \"paper\"");
+  return *profile;
+}
+
+std::uint64_t ReadHash(const ObjectReader& feature_set) {
+  const std::string text = feature_set.String("hash");
+  std::uint64_t hash = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, hash, 16);
+  if (text.size() != 16 || result.ec != std::errc() || result.ptr != end) {
+    feature_set.FailAt("hash", "16 hexadecimal digits");
+  }
+  return hash;
+}
+
+std::vector<TemplateClip> ReadClips(const ObjectReader& root) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  std::vector<TemplateClip> clips;
+  for (const json& element : root.Array("clips")) {
+    const ObjectReader object(element, fmt::format("clips[{}]", clips.size()), root.file());
+    object.AllowOnly({"file", "first_frame", "last_frame"});
+    TemplateClip& clip = clips.emplace_back();
+    clip.file = object.String("file");
+    clip.first_frame = object.Integer("first_frame", 0, kMost);
+    clip.last_frame = object.Integer("last_frame", 0, kMost);
+    const bool whole = clip.first_frame == 0 && clip.last_frame == 0;
+    if (!whole && (clip.first_frame == 0 || clip.last_frame < clip.first_frame)) {
+      object.FailAt("last_frame", fmt::format("a frame not before first_frame ({}); both 0 mean "
+                                              "the whole file",
+                                              clip.first_frame));
+    }
+  }
+  return clips;
+}
+
+std::vector<double> ReadValues(const json& list, std::string_view name, const ObjectReader& root) {
+  std::vector<double> values;
+  values.reserve(list.size());
+  for (const json& element : list) {
+    if (!element.is_number()) {
+      ObjectReader::FailWith(
+          fmt::format("{}[{}] is {}; expected a number", name, values.size(), ShownValue(element)),
+          root.file());
+    }
+    values.push_back(element.get<double>());
+  }
+  return values;
+}
+
+TemplateMatrix ReadMatrix(const ObjectReader& root) {
+  const ObjectReader object = root.Object("matrix");
+  object.AllowOnly({"rate_hz", "feature_count", "weights", "columns"});
+  TemplateMatrix matrix;
+  matrix.rate_hz = object.Number("rate_hz");
+  matrix.feature_count = static_cast<int>(object.Integer("feature_count", 1, kMaxFeatures));
+  matrix.weights = ReadValues(object.Array("weights"), "matrix.weights", root);
+  const json& columns = object.Array("columns");
+  if (columns.size() != matrix.weights.size()) {
+    ObjectReader::FailWith(
+        fmt::format("matrix.columns has {} columns, matrix.weights has {}; expected as many",
+                    columns.size(), matrix.weights.size()),
+        root.file());
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const std::string name = fmt::format("matrix.columns[{}]", c);
+    if (!columns[c].is_array() ||
+        columns[c].size() != static_cast<std::size_t>(matrix.feature_count)) {
+      ObjectReader::FailWith(fmt::format("{} is {}; expected a list of {} numbers", name,
+                                         ShownValue(columns[c]), matrix.feature_count),
+                             root.file());
+    }
+    const std::vector<double> values = ReadValues(columns[c], name, root);
+    matrix.values.insert(matrix.values.end(), values.begin(), values.end());
+  }
+  if (const std::string problem = internal::ProblemOf(matrix); !problem.empty()) {
+    ObjectReader::FailWith("matrix has " + problem, root.file());
+  }
+  return matrix;
+}
+
+bool IsThreshold(double tau) { return std::isfinite(tau) && tau >= 0; }
+
+MotionTemplate ReadFields(const ObjectReader& root) {
+  root.AllowOnly({"format", "version", "name", "learning", "matching", "feature_set", "clips",
+                  "rounds", "quantisation", "tau", "tau_origin", "matrix"});
+  MotionTemplate result;
+  result.name = root.String("name");
+  result.learning = ReadProfile(root, "learning");
+  result.matching = ReadProfile(root, "matching");
+  const ObjectReader feature_set = root.Object("feature_set");
+  feature_set.AllowOnly({"name", "hash"});
+  result.feature_set = feature_set.String("name");
+  result.feature_set_hash = ReadHash(feature_set);
+  result.clips = ReadClips(root);
+  result.rounds = static_cast<int>(root.Integer("rounds", 0, std::numeric_limits<int>::max()));
+  result.quantisation = root.Number("quantisation");
+  if (!internal::IsQuantisation(result.quantisation)) {
+    root.FailAt("quantisation", "0 up to, not including, 0.5");
+  }
+  if (!root.IsNull("tau")) {
+    result.tau = root.Number("tau");
+    if (!IsThreshold(*result.tau)) root.FailAt("tau", "a number of at least 0, or null");
+  }
+  result.tau_origin = root.String("tau_origin");
+  result.matrix = ReadMatrix(root);
+  return result;
+}
+
+void CheckWritten(const MotionTemplate& motion_template) {
+  std::string problem = internal::ProblemOf(motion_template.matrix);
+  if (!problem.empty()) problem = "matrix has " + problem;
+  if (!internal::IsQuantisation(motion_template.quantisation)) {
+    problem = fmt::format("quantisation threshold {}; expected 0 up to, not including, 0.5",
+                          motion_template.quantisation);
+  }
+  if (motion_template.tau && !IsThreshold(*motion_template.tau)) {
+    problem = fmt::format("tau {}; expected a number of at least 0", *motion_template.tau);
+  }
+  if (motion_template.rounds < 0) {
+    problem = fmt::format("{} rounds; expected at least 0", motion_template.rounds);
+  }
+  for (const TemplateClip& clip : motion_template.clips) {
+    const bool whole = clip.first_frame == 0 && clip.last_frame == 0;
+    if (!whole && (clip.first_frame < 1 || clip.last_frame < clip.first_frame)) {
+      problem = fmt::format("clip '{}' has frames {} to {}; expected 1 or more, or both 0",
+                            clip.file, clip.first_frame, clip.last_frame);
+    }
+  }
+  if (problem.empty()) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              fmt::format("template '{}' cannot be written: {}", motion_template.name, problem));
+}
+
+std::string JsonString(const std::string& text) {
+  try {
+    return json(text).dump();
+  } catch (const json::type_error&) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("text {} is not UTF-8, so a template file cannot hold it; rename it",
+                            Quoted(text)));
+  }
+}
+
+void AppendNumbers(std::string& out, std::span<const double> numbers) {
+  out += '[';
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) out += ", ";
+    // JSON readers take "-0" for an integer, which has no negative zero.
+    if (numbers[i] == 0 && std::signbit(numbers[i])) {
+      out += "-0.0";
+    } else {
+      AppendShortestText(out, numbers[i]);
+    }
+  }
+  out += ']';
+}
+
+std::string FormatClips(const std::vector<TemplateClip>& clips) {
+  std::string out = "[";
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    out += fmt::format("{}\n    {{\"file\": {}, \"first_frame\": {}, \"last_frame\": {}}}",
+                       i > 0 ? "," : "", JsonString(clips[i].file), clips[i].first_frame,
+                       clips[i].last_frame);
+  }
+  return out + (clips.empty() ? "]" : "\n  ]");
+}
+
+// One column a line, so that two templates can be compared by eye and by diff.
+std::string FormatMatrix(const TemplateMatrix& matrix) {
+  std::string out = fmt::format(
+      "{{\n    \"rate_hz\": {},\n    \"feature_count\": {},\n    "
+      "\"weights\": ",
+      ToShortestText(matrix.rate_hz), matrix.feature_count);
+  AppendNumbers(out, matrix.weights);
+  out += ",\n    \"columns\": [";
+  for (int c = 0; c < matrix.column_count(); ++c) {
+    out += c > 0 ? ",\n      " : "\n      ";
+    AppendNumbers(out, matrix.Column(c));
+  }
+  return out + "\n    ]\n  }";
+}
+
+}  // namespace
+
+MotionTemplate ParseTemplate(std::string_view json_text, const std::filesystem::path& file) {
+  const json document = ParseJson(json_text, file);
+  const ObjectReader root(document, "", file);
+  CheckHeader(root);
+  return ReadFields(root);
+}
+
+MotionTemplate ReadTemplate(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return ParseTemplate(file.text(), path);
+}
+
+std::string FormatTemplate(const MotionTemplate& motion_template) {
+  CheckWritten(motion_template);
+  std::string out = "{\n";
+  const auto add = [&out](std::string_view key, std::string_view value) {
+    out += fmt::format("{}  \"{}\": {}", out.size() > 2 ? ",\n" : "", key, value);
+  };
+  add("format", fmt::format("\"{}\"", kFormat));
+  add("version", std::to_string(kVersion));
+  add("name", JsonString(motion_template.name));
+  add("learning", fmt::format("\"{}\"", ToString(motion_template.learning)));
+  add("matching", fmt::format("\"{}\"", ToString(motion_template.matching)));
+  add("feature_set",
+      fmt::format("{{\"name\": {}, \"hash\": \"{:016x}\"}}",
+                  JsonString(motion_template.feature_set), motion_template.feature_set_hash));
+  add("clips", FormatClips(motion_template.clips));
+  add("rounds", std::to_string(motion_template.rounds));
+  add("quantisation", ToShortestText(motion_template.quantisation));
+  add("tau", motion_template.tau ? ToShortestText(*motion_template.tau) : "null");
+  add("tau_origin", JsonString(motion_template.tau_origin));
+  add("matrix", FormatMatrix(motion_template.matrix));
+  return out + "\n}\n";
+}
+
+void WriteTemplate(const MotionTemplate& motion_template, const std::filesystem::path& path,
+                   Overwrite overwrite) {
+  WriteFile(path, FormatTemplate(motion_template), overwrite);
+}
+
+}  // namespace kinebase

@@ -1,0 +1,20 @@
+#include "support/temporary_folder.h"
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace kinebase::test {
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "kinebase-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace kinebase::test

@@ -1,0 +1,277 @@
+#include "kinebase/templates/template_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "kinebase/core/error.h"
+#include "support/files.h"
+#include "support/temporary_folder.h"
+#include "templates/matrices.h"
+
+namespace kinebase::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+std::filesystem::path SamplePath() {
+  return std::filesystem::path(KINEBASE_SOURCE_DIR) / "tests/templates/samples/version_1.json";
+}
+
+MotionTemplate SampleTemplate() {
+  MotionTemplate result;
+  result.name = "arm up";
+  result.learning = Profile::kPaper;
+  result.matching = Profile::kBonn;
+  result.feature_set = "my set";
+  result.feature_set_hash = 0x00f1e2d3c4b5a697;
+  result.clips = {{"takes/bd 01.amc", 121, 480}, {"takes/whole.bvh", 0, 0}};
+  result.rounds = 4;
+  result.quantisation = 0.05;
+  result.tau = 0.0625;
+  result.tau_origin = "best F1 on the training clips";
+  result.matrix =
+      MakeMatrix({{0, 1, 0.5}, {0.3333333333333333, 1, 1}, {1, 0, 2.5e-9}}, {1, 0.875, 1.1});
+  return result;
+}
+
+MotionTemplate RandomTemplate(Random& random) {
+  const auto text = [&] {
+    const char* const pieces[] = {"a", "\"", "\\", "\n", "ü", "/", "\x01", "走", " "};
+    std::string result;
+    for (int i = random.Below(8); i > 0; --i) result += pieces[random.Below(9)];
+    return result;
+  };
+  const auto profile = [&] { return random.Below(2) == 0 ? Profile::kBonn : Profile::kPaper; };
+  MotionTemplate result;
+  result.name = text();
+  result.learning = profile();
+  result.matching = profile();
+  result.feature_set = text();
+  result.feature_set_hash = random.Word();
+  for (int i = random.Below(4); i > 0; --i) {
+    const std::int64_t first = 1 + static_cast<std::int64_t>(random.Word() >> 20U);
+    result.clips.push_back({text(), first, first + random.Below(1000)});
+  }
+  result.rounds = random.Below(11);
+  result.quantisation = random.Unit() / 2;
+  if (random.Below(2) == 0) result.tau = random.Unit() * 1e-3;
+  result.tau_origin = text();
+  result.matrix = RandomMatrix(random, 1 + random.Below(20), 1 + random.Below(64));
+  result.matrix.rate_hz = 120 * random.Unit() + 1e-9;
+  return result;
+}
+
+TEST(TemplateFile, OpensVersionOne) { EXPECT_EQ(ReadTemplate(SamplePath()), SampleTemplate()); }
+
+TEST(TemplateFile, IsWrittenAsTheDocumentationShowsIt) {
+  EXPECT_EQ(FormatTemplate(SampleTemplate()), ReadText(SamplePath()));
+}
+
+RC_GTEST_PROP(TemplateFile, ReadsBackWhatItWrote, ()) {
+  Random random(*rc::gen::arbitrary<std::uint32_t>());
+  const MotionTemplate original = RandomTemplate(random);
+  const std::string text = FormatTemplate(original);
+  const MotionTemplate read = ParseTemplate(text, "a.json");
+  RC_ASSERT(read == original);
+  RC_ASSERT(FormatTemplate(read) == text);
+}
+
+TEST(TemplateFile, KeepsExtremeNumbersToTheLastBit) {
+  MotionTemplate original = SampleTemplate();
+  original.matrix.values = {-0.0,    std::numeric_limits<double>::denorm_min(),
+                            0.1,     std::nextafter(1.0, 0.0),
+                            1.0 / 3, 1,
+                            0,       1,
+                            1e-300};
+  original.matrix.weights = {1e-12, 1e12, std::nextafter(1.0, 2.0)};
+  const MotionTemplate read = ParseTemplate(FormatTemplate(original), "a.json");
+  EXPECT_EQ(read, original);
+  EXPECT_TRUE(std::signbit(read.matrix.values[0]));
+}
+
+TEST(TemplateFile, WritesAFileAndNeverOverAnotherUnasked) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "templates" / "arm.json";
+  MotionTemplate motion_template = SampleTemplate();
+  WriteTemplate(motion_template, path, Overwrite::kNo);
+  motion_template.name = "other";
+  const Error error = ErrorOf([&] { WriteTemplate(motion_template, path, Overwrite::kNo); });
+  EXPECT_EQ(error.code(), ErrorCode::kAlreadyExists);
+  EXPECT_EQ(ReadTemplate(path), SampleTemplate());
+  WriteTemplate(motion_template, path, Overwrite::kYes);
+  EXPECT_EQ(ReadTemplate(path).name, "other");
+}
+
+TEST(TemplateFile, RefusesANewerVersionInPlainWords) {
+  json document = json::parse(FormatTemplate(SampleTemplate()));
+  document["version"] = 2;
+  document["invention"] = "of tomorrow";
+  const Error error = ErrorOf([&] { (void)ParseTemplate(document.dump(), "new.json"); });
+  EXPECT_EQ(error.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(error.what(), HasSubstr("new.json"));
+  EXPECT_THAT(error.what(), HasSubstr("version 2"));
+  EXPECT_THAT(error.what(), HasSubstr("newer Kinebase"));
+}
+
+void ExpectMalformed(const json& document, const std::string& expected) {
+  const Error error = ErrorOf([&] { (void)ParseTemplate(document.dump(), "bad.json"); });
+  EXPECT_EQ(error.code(), ErrorCode::kMalformedFile) << expected;
+  EXPECT_THAT(error.what(), HasSubstr(expected));
+  EXPECT_THAT(error.what(), HasSubstr("bad.json"));
+}
+
+// Every object of the document, as a pointer into it.
+const char* const kObjects[] = {"", "/feature_set", "/clips/0", "/matrix"};
+
+TEST(TemplateFile, NamesEveryFieldThatIsMissing) {
+  const json good = json::parse(FormatTemplate(SampleTemplate()));
+  int fields = 0;
+  for (const char* pointer : kObjects) {
+    for (const auto& [key, value] : good.at(json::json_pointer(pointer)).items()) {
+      json bad = good;
+      bad.at(json::json_pointer(pointer)).erase(key);
+      ExpectMalformed(bad, key + "' is missing");
+      ++fields;
+    }
+  }
+  EXPECT_EQ(fields, 12 + 2 + 3 + 4);
+}
+
+TEST(TemplateFile, NamesEveryFieldOfAWrongType) {
+  const json good = json::parse(FormatTemplate(SampleTemplate()));
+  for (const char* pointer : kObjects) {
+    for (const auto& [key, value] : good.at(json::json_pointer(pointer)).items()) {
+      for (const json& wrong : {json(true), json::object({{"a", 1}}), json("text"), json(-7.5)}) {
+        if (wrong.is_number() && value.is_number()) continue;
+        if (wrong.is_string() && value.is_string()) continue;
+        json bad = good;
+        bad.at(json::json_pointer(pointer))[key] = wrong;
+        if (wrong.is_object() && (key == "feature_set" || key == "matrix")) {
+          ExpectMalformed(bad, "unknown field");
+        } else {
+          ExpectMalformed(bad, key);
+        }
+      }
+    }
+  }
+}
+
+TEST(TemplateFile, NamesFieldsThatItDoesNotKnow) {
+  const json good = json::parse(FormatTemplate(SampleTemplate()));
+  for (const char* pointer : kObjects) {
+    json bad = good;
+    bad.at(json::json_pointer(pointer))["colour"] = 1;
+    ExpectMalformed(bad, "colour");
+  }
+}
+
+struct BadValue {
+  const char* pointer;
+  json value;
+  const char* expected;
+};
+
+TEST(TemplateFile, NamesEveryValueOutOfRange) {
+  const BadValue cases[] = {
+      {"/format", "kinebase-take", "no template file"},
+      {"/version", 0, "version is 0"},
+      {"/version", 1.5, "version is 1.5"},
+      {"/learning", "Bonn", "learning is"},
+      {"/matching", "", "matching is"},
+      {"/feature_set/hash", "12", "16 hexadecimal digits"},
+      {"/feature_set/hash", "00f1e2d3c4b5a69g", "16 hexadecimal digits"},
+      {"/feature_set/hash", "-0f1e2d3c4b5a697", "16 hexadecimal digits"},
+      {"/clips/0/first_frame", -1, "clips[0].first_frame is -1"},
+      {"/clips/0/first_frame", 0, "clips[0].last_frame"},
+      {"/clips/0/last_frame", 120, "clips[0].last_frame is 120"},
+      {"/clips/1/last_frame", 5, "clips[1].last_frame is 5"},
+      {"/clips/1", 3, "clips[1] is 3"},
+      {"/rounds", -1, "rounds is -1"},
+      {"/rounds", 2.5, "rounds is 2.5"},
+      {"/rounds", 3000000000, "rounds is 3000000000"},
+      {"/rounds", 18446744073709551615U, "rounds is 18446744073709551615"},
+      {"/quantisation", 0.5, "quantisation is 0.5"},
+      {"/quantisation", -0.1, "quantisation is -0.1"},
+      {"/tau", -0.1, "tau is -0.1"},
+      {"/tau", "0.1", "tau is"},
+      {"/matrix/rate_hz", 0, "rate 0 Hz"},
+      {"/matrix/rate_hz", -30, "rate -30 Hz"},
+      {"/matrix/feature_count", 0, "matrix.feature_count is 0"},
+      {"/matrix/feature_count", 65, "matrix.feature_count is 65"},
+      {"/matrix/feature_count", 2, "expected a list of 2 numbers"},
+      {"/matrix/weights", json::array(), "matrix.columns has 3 columns, matrix.weights has 0"},
+      {"/matrix/weights/1", 0, "weight 0 of column 2"},
+      {"/matrix/weights/1", -2, "weight -2 of column 2"},
+      {"/matrix/weights/1", nullptr, "matrix.weights[1] is null"},
+      {"/matrix/columns/1", json::array({1, 1}), "matrix.columns[1]"},
+      {"/matrix/columns/1", 1, "matrix.columns[1]"},
+      {"/matrix/columns/2/1", 1.25, "value 1.25 of feature 2 in column 3"},
+      {"/matrix/columns/2/1", -1, "value -1 of feature 2 in column 3"},
+      {"/matrix/columns/2/1", "1", "matrix.columns[2][1]"},
+  };
+  const json good = json::parse(FormatTemplate(SampleTemplate()));
+  for (const BadValue& bad : cases) {
+    json document = good;
+    document.at(json::json_pointer(bad.pointer)) = bad.value;
+    SCOPED_TRACE(bad.pointer);
+    ExpectMalformed(document, bad.expected);
+  }
+  json empty = good;
+  empty["matrix"]["weights"] = json::array();
+  empty["matrix"]["columns"] = json::array();
+  ExpectMalformed(empty, "no columns");
+}
+
+TEST(TemplateFile, RefusesWhatIsNotJsonWithItsPlace) {
+  for (const char* text : {"", "{", "[1, 2", "{\"format\": nan}", "\xff\xfe", "{} {}", "null x"}) {
+    const Error error = ErrorOf([&] { (void)ParseTemplate(text, "bad.json"); });
+    EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+    EXPECT_THAT(error.what(), HasSubstr("not JSON"));
+    EXPECT_GE(error.place().byte, 0);
+  }
+  for (const char* text : {"null", "[]", "3", "\"kinebase-template\""}) {
+    const Error error = ErrorOf([&] { (void)ParseTemplate(text, "bad.json"); });
+    EXPECT_THAT(error.what(), HasSubstr("expected an object"));
+  }
+}
+
+TEST(TemplateFile, RefusesNumbersThatNoDoubleHolds) {
+  std::string text = FormatTemplate(SampleTemplate());
+  text.replace(text.find("0.0625"), 6, "1e9999");
+  const Error error = ErrorOf([&] { (void)ParseTemplate(text, "bad.json"); });
+  EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+  EXPECT_THAT(error.what(), HasSubstr("too large"));
+}
+
+TEST(TemplateFile, RefusesEveryCutThatLosesSomething) {
+  const std::string text = FormatTemplate(SampleTemplate());
+  for (std::size_t length = 0; length + 2 < text.size(); ++length) {
+    const Error error =
+        ErrorOf([&] { (void)ParseTemplate(std::string_view(text).substr(0, length), "cut.json"); });
+    EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+  }
+}
+
+TEST(TemplateFile, DoesNotWriteWhatItWouldNotRead) {
+  std::vector<MotionTemplate> bad(7, SampleTemplate());
+  bad[0].matrix.values[0] = std::numeric_limits<double>::quiet_NaN();
+  bad[1].quantisation = 0.5;
+  bad[2].tau = std::numeric_limits<double>::infinity();
+  bad[3].rounds = -1;
+  bad[4].clips[0].last_frame = 7;
+  bad[5].name = "\xff";
+  bad[6].matrix = {};
+  for (const MotionTemplate& motion_template : bad) {
+    EXPECT_EQ(ErrorOf([&] { (void)FormatTemplate(motion_template); }).code(),
+              ErrorCode::kInvalidArgument);
+  }
+}
+
+}  // namespace
+}  // namespace kinebase::test
