@@ -3,10 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <utility>
 
+#include "cli/arguments.h"
 #include "fmt/format.h"
 #include "kinebase/core/parallel.h"
 
@@ -28,19 +31,30 @@ std::size_t DisplayWidth(std::string_view text) {
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+// Whether the terminal's last line is a bar. Progress has one line, and whatever else is printed
+// clears it first: on a terminal results and messages go to the same place.
+bool& BarIsDrawn() {
+  static bool is_drawn = false;
+  return is_drawn;
+}
+
+void ClearBar() {
+  if (!std::exchange(BarIsDrawn(), false)) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+}
+
 // Clears its line when the work is over, whether it went well or not.
 class ProgressBar {
  public:
-  ~ProgressBar() {
-    if (drawn_) std::fputs("\r\033[K", stderr);
-  }
+  ~ProgressBar() { ClearBar(); }
 
   bool Show(std::string_view what, std::size_t done, std::size_t total) {
     const auto now = std::chrono::steady_clock::now();
     constexpr auto kBetweenDrawings = std::chrono::milliseconds(50);
     if (now - last_ < kBetweenDrawings) return true;
     last_ = now;
-    drawn_ = true;
+    BarIsDrawn() = true;
     const double share = total == 0 ? 0 : static_cast<double>(done) / static_cast<double>(total);
     const int filled = static_cast<int>(share * kBarWidth);
     fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {}/{}\033[K", what, "", filled, "",
@@ -51,7 +65,6 @@ class ProgressBar {
 
  private:
   std::chrono::steady_clock::time_point last_;
-  bool drawn_ = false;
 };
 
 }  // namespace
@@ -63,7 +76,7 @@ void AddOutputOptions(CLI::App& command, CommonOptions& options) {
 
 void AddThreadsOption(CLI::App& command, CommonOptions& options) {
   command.add_option("--threads", options.threads, "Threads to use (default: all that there are)")
-      ->check(CLI::Range(1, 4096))
+      ->check(WholeNumber(1, 4096))
       ->type_name("N");
 }
 
@@ -77,18 +90,20 @@ void AddLoadOptions(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--source-rate", options.load.source_rate_hz,
                   "Frames a second, for files that do not tell")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberBetween(kSmallestRateHz, kLargestRateHz))
       ->type_name("HZ");
   command.add_flag("--strict", options.load.strict, "Refuse files that would be repaired");
-  const std::map<std::string, LengthReading> readings = {
+  static const std::map<std::string, LengthReading> kReadings = {
       {"auto", LengthReading::kAuto},
       {"inches", LengthReading::kDivideToInches},
       {"centimetres", LengthReading::kMultiplyToCentimetres}};
   command
-      .add_option("--asf-length", options.load.length_reading,
-                  "What an ASF's ':units length u' means: v / u inches, or v · u centimetres")
-      ->transform(CLI::CheckedTransformer(readings, CLI::ignore_case))
-      ->option_text("auto|inches|centimetres");
+      .add_option_function<std::string>(
+          "--asf-length",
+          [&options](const std::string& word) { options.load.length_reading = kReadings.at(word); },
+          "What an ASF's ':units length u' means: v / u inches, or v · u centimetres")
+      ->check(OneOf({"auto", "inches", "centimetres"}))
+      ->type_name("auto|inches|centimetres");
 }
 
 ProgressCallback MakeProgress(const CommonOptions& options) {
@@ -100,6 +115,7 @@ ProgressCallback MakeProgress(const CommonOptions& options) {
 }
 
 void Print(std::string_view text) {
+  ClearBar();
   const bool failed =
       std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0;
   if (failed) throw Error(ErrorCode::kIoFailure, "cannot write to standard output");
@@ -111,12 +127,15 @@ void PrintJson(const Json& json) {
 }
 
 void PrintError(std::string_view message) {
+  ClearBar();
   fmt::print(stderr, "{}error:{} {}\n", UseColour() ? "\033[1;31m" : "",
-             UseColour() ? "\033[0m" : "", message);
+             UseColour() ? "\033[0m" : "", OnOneLine(message));
 }
 
 void PrintNote(const CommonOptions& options, std::string_view message) {
-  if (!options.quiet) fmt::print(stderr, "{}\n", message);
+  if (options.quiet) return;
+  ClearBar();
+  fmt::print(stderr, "{}\n", OnOneLine(message));
 }
 
 void PrintDiagnostics(const CommonOptions& options, const std::filesystem::path& file,
@@ -129,13 +148,32 @@ void PrintDiagnostics(const CommonOptions& options, const std::filesystem::path&
   }
 }
 
+void PrintWritten(const CommonOptions& options, const std::filesystem::path& path) {
+  PrintNote(options, "written to " + path.string());
+}
+
+bool IsStandardOutput(const std::filesystem::path& path) { return path.empty() || path == "-"; }
+
 void WriteTextOrPrint(const std::filesystem::path& path, std::string_view text,
                       const CommonOptions& options) {
-  if (path.empty() || path == "-") {
+  if (IsStandardOutput(path)) {
     Print(text);
   } else {
     WriteFile(path, text, options.overwrite());
   }
+}
+
+std::string OnOneLine(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      line += fmt::format("\\x{:02X}", byte);
+    } else {
+      line += c;
+    }
+  }
+  return line;
 }
 
 std::string FormatCount(std::int64_t count, std::string_view one, std::string_view many) {
@@ -144,7 +182,7 @@ std::string FormatCount(std::int64_t count, std::string_view one, std::string_vi
 
 std::string FormatTime(double seconds) {
   // Rounded first, so that 59.97 becomes 1:00.0 and not 0:60.0.
-  const auto tenths = static_cast<std::int64_t>(seconds * 10 + 0.5);
+  const std::int64_t tenths = std::llround(seconds * 10);
   return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
 }
 
@@ -158,6 +196,7 @@ TextTable::TextTable(std::vector<std::string> titles) {
 
 void TextTable::Add(std::vector<std::string> cells) {
   cells.resize(right_aligned_.size());
+  for (std::string& cell : cells) cell = OnOneLine(cell);
   rows_.push_back(std::move(cells));
 }
 

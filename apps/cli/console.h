@@ -59,10 +59,15 @@ void PrintNote(const CommonOptions& options, std::string_view message);
 void PrintDiagnostics(const CommonOptions& options, const std::filesystem::path& file,
                       const Diagnostics& diagnostics);
 
+void PrintWritten(const CommonOptions& options, const std::filesystem::path& path);
+
 // The text to `path`, or to stdout if that is empty or "-".
+[[nodiscard]] bool IsStandardOutput(const std::filesystem::path& path);
 void WriteTextOrPrint(const std::filesystem::path& path, std::string_view text,
                       const CommonOptions& options);
 
+// For terminals and messages: a file may have a line break or worse in its name.
+[[nodiscard]] std::string OnOneLine(std::string_view text);
 [[nodiscard]] std::string FormatCount(std::int64_t count, std::string_view one,
                                       std::string_view many);  // "1 clip", "3 clips".
 [[nodiscard]] std::string FormatTime(double seconds);          // "1:23.4".

@@ -2,15 +2,28 @@
 
 #include <algorithm>
 
+#include "cli/arguments.h"
+#include "cli/console.h"
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
+#include "kinebase/features/feature_extraction.h"
 
 namespace kinebase::cli {
 
+FeatureSet FeatureOptions::Load() const {
+  FeatureSet features = LoadFeatureSet(feature_set.empty() ? profile : feature_set);
+  try {
+    CheckColumnRate(features, rate_hz);
+  } catch (const Error& error) {
+    throw UsageError(fmt::format("--rate: {}", error.what()));
+  }
+  return features;
+}
+
 CLI::Option* AddProfileOption(CLI::App& command, std::string& profile, const std::string& text) {
   return command.add_option("--profile", profile, text)
-      ->check(CLI::IsMember({"bonn", "paper"}))
-      ->type_name("NAME");
+      ->check(OneOf({"bonn", "paper"}))
+      ->type_name("bonn|paper");
 }
 
 CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set) {
@@ -21,13 +34,14 @@ CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set) {
 
 void AddRateOption(CLI::App& command, double& rate_hz) {
   command
-      .add_option("--rate", rate_hz, "Columns a second; must divide the feature set's rate (120)")
-      ->check(CLI::PositiveNumber)
+      .add_option("--rate", rate_hz, "Columns a second; must divide the feature set's rate, 120")
+      ->check(PositiveNumber())
       ->type_name("HZ")
       ->capture_default_str();
 }
 
-FeatureSet FeatureSetOfTemplate(const MotionTemplate& motion_template,
+FeatureSet FeatureSetOfTemplate(const std::filesystem::path& file,
+                                const MotionTemplate& motion_template,
                                 const std::string& feature_set) {
   const auto built_in = BuiltInFeatureSets();
   const bool is_built_in =
@@ -36,11 +50,17 @@ FeatureSet FeatureSetOfTemplate(const MotionTemplate& motion_template,
     throw Error(ErrorCode::kNotFound,
                 fmt::format("template '{}' needs the feature set '{}': name its file with "
                             "--feature-set",
-                            motion_template.name, motion_template.feature_set));
+                            motion_template.name, motion_template.feature_set),
+                {file});
   }
   FeatureSet features =
       LoadFeatureSet(feature_set.empty() ? motion_template.feature_set : feature_set);
-  CheckFeatureSet(motion_template, features);
+  try {
+    CheckFeatureSet(motion_template, features);
+    CheckColumnRate(features, motion_template.matrix.rate_hz);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.message(), {file});
+  }
   return features;
 }
 

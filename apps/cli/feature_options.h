@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 
 #include "kinebase/features/feature_set.h"
@@ -15,19 +16,20 @@ struct FeatureOptions {
   double rate_hz = 30;
 
   [[nodiscard]] Profile ParsedProfile() const { return *ParseProfile(profile); }
-  [[nodiscard]] FeatureSet Load() const {
-    return LoadFeatureSet(feature_set.empty() ? profile : feature_set);
-  }
+
+  // Errors  UsageError if the set has no such rate; those of LoadFeatureSet.
+  [[nodiscard]] FeatureSet Load() const;
 };
 
 CLI::Option* AddProfileOption(CLI::App& command, std::string& profile, const std::string& text);
 CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set);
 void AddRateOption(CLI::App& command, double& rate_hz);
 
-// The feature set that a template needs: its own if built in, else the file that the user names.
-// Errors  NotFound, naming --feature-set; Mismatch if it is another than the template was made
-// with.
-[[nodiscard]] FeatureSet FeatureSetOfTemplate(const MotionTemplate& motion_template,
+// The feature set that the template in `file` needs: its own if built in, else the one that the
+// user names. Errors  NotFound, naming --feature-set; Mismatch if it is another than the template
+// was made with; InvalidArgument if it has not the template's rate.
+[[nodiscard]] FeatureSet FeatureSetOfTemplate(const std::filesystem::path& file,
+                                              const MotionTemplate& motion_template,
                                               const std::string& feature_set);
 
 }  // namespace kinebase::cli

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
@@ -41,9 +42,12 @@ bool IsPicture(const std::filesystem::path& path) {
 
 int Run(const FeaturesOptions& options) {
   const Overwrite overwrite = options.common.overwrite();
-  if (!options.output.empty()) CheckWritable(options.output, overwrite);
+  const bool is_printed = IsStandardOutput(options.output);
+  if (is_printed && options.common.json)
+    throw UsageError("--json needs -o FILE: the table itself is CSV");
+  if (!is_printed) CheckWritable(options.output, overwrite);
   const FeatureSet features = options.features.Load();
-  const TakeFeatures take = LoadTakeFeatures(ParseTakeStretch(options.motion), features,
+  const TakeFeatures take = LoadTakeFeatures(ParseMotionArgument(options.motion), features,
                                              options.features.rate_hz, options.common.load);
   PrintDiagnostics(options.common, take.path, take.diagnostics);
   if (IsPicture(options.output)) {
@@ -52,11 +56,14 @@ int Run(const FeaturesOptions& options) {
   } else {
     WriteTextOrPrint(options.output, ToCsv(take, features), options.common);
   }
-  if (options.common.json && !options.output.empty()) {
+  if (is_printed) return kDone;
+  if (options.common.json) {
     PrintJson({{"file", options.output.string()},
                {"columns", take.features.column_count()},
                {"features", features.feature_count()},
                {"rate_hz", take.features.rate_hz}});
+  } else {
+    PrintWritten(options.common, options.output);
   }
   return kDone;
 }

@@ -32,6 +32,8 @@ FileInfo Inspect(const std::filesystem::path& path, const LoadOptions& options) 
     info.box = ComputeBoundingBox(ForwardKinematics(info.loaded->motion));
   } catch (const Error& error) {
     info.error = error;
+  } catch (const std::bad_alloc&) {
+    info.error = Error(ErrorCode::kIoFailure, "needs more memory than there is", {.file = path});
   }
   return info;
 }
@@ -76,9 +78,9 @@ std::string Describe(const FileInfo& info) {
   const LoadedMotion& loaded = *info.loaded;
   const Motion& motion = loaded.motion;
   const Eigen::Vector3d size = info.box.high_cm - info.box.low_cm;
-  std::string text = info.path.string() + '\n';
+  std::string text = OnOneLine(info.path.string()) + '\n';
   const auto line = [&](std::string_view name, const std::string& value) {
-    if (!value.empty()) text += fmt::format("  {:<10}{}\n", name, value);
+    if (!value.empty()) text += fmt::format("  {:<10}{}\n", name, OnOneLine(value));
   };
   line("format", std::string(loaded.format));
   line("frames", motion.first_frame == 1
@@ -120,7 +122,7 @@ std::string DescribeAll(const std::vector<FileInfo>& files) {
 int Run(const InfoOptions& options) {
   const auto paths = FindMotionFiles(options.paths);
   std::vector<FileInfo> files(paths.size());
-  ParallelFor(paths.size(), options.common.threads,
+  ParallelFor(paths.size(), options.common.threads, "reading", MakeProgress(options.common),
               [&](std::size_t i) { files[i] = Inspect(paths[i], options.common.load); });
   Json list = Json::array();
   Json failed = Json::array();

@@ -1,12 +1,13 @@
 // kinebase joints: where the 24 standard joints are, or how they are turned, in every frame.
 
 #include <memory>
-#include <numbers>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "fmt/format.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/core/units.h"
 #include "kinebase/library/takes.h"
 #include "kinebase/motion/kinematics.h"
 
@@ -63,7 +64,7 @@ std::string RotationTable(const Motion& motion, bool euler) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
       Eigen::VectorXd values;
       if (euler) {
-        values = angles[j][static_cast<std::size_t>(frame)] * 180 / std::numbers::pi;
+        values = angles[j][static_cast<std::size_t>(frame)] / kRadiansPerDegree;
       } else {
         const Eigen::Quaterniond& q = motion.rotation(frame, joints[j].second);
         values = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
@@ -78,8 +79,11 @@ std::string RotationTable(const Motion& motion, bool euler) {
 }
 
 int Run(const JointsOptions& options) {
-  if (!options.output.empty()) CheckWritable(options.output, options.common.overwrite());
-  const TakeStretch stretch = ParseTakeStretch(options.motion);
+  const bool is_printed = IsStandardOutput(options.output);
+  if (is_printed && options.common.json)
+    throw UsageError("--json needs -o FILE: the table itself is CSV");
+  if (!is_printed) CheckWritable(options.output, options.common.overwrite());
+  const TakeStretch stretch = ParseMotionArgument(options.motion);
   const LoadedMotion loaded = LoadMotion(stretch.file, options.common.load);
   PrintDiagnostics(options.common, stretch.file, loaded.diagnostics);
   const Motion motion = CutToStretch(loaded.motion, stretch);
@@ -87,10 +91,13 @@ int Run(const JointsOptions& options) {
                    options.rotations.empty() ? PositionTable(motion)
                                              : RotationTable(motion, options.rotations == "euler"),
                    options.common);
-  if (options.common.json && !options.output.empty()) {
+  if (is_printed) return kDone;
+  if (options.common.json) {
     PrintJson({{"file", options.output.string()},
                {"frames", motion.frame_count},
                {"rate_hz", motion.rate_hz}});
+  } else {
+    PrintWritten(options.common, options.output);
   }
   return kDone;
 }
@@ -108,7 +115,8 @@ void AddJointsCommand(CLI::App& program, int& exit_code) {
   command
       ->add_option("--rotations", options->rotations,
                    "Local rotations instead: quaternions (w, x, y, z) or euler (degrees)")
-      ->check(CLI::IsMember({"quaternions", "euler"}));
+      ->check(OneOf({"quaternions", "euler"}))
+      ->type_name("quaternions|euler");
   AddOutputOptions(*command, options->common);
   AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);

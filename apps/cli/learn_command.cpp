@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
@@ -28,21 +29,31 @@ struct LearnCommandOptions {
   int max_rounds = 10;
 };
 
-std::vector<TakeStretch> ChosenClips(const LearnCommandOptions& options) {
-  if (options.clips.empty() == options.list.empty()) {
+// Learning needs to know from what, and where to put the result.
+void CheckUsage(const LearnCommandOptions& options) {
+  if (options.clips.empty() && options.list.empty()) {
     throw UsageError("learn needs clips, or a list of clips: --list clips.csv --class NAME");
   }
+  if (!options.clips.empty() && !options.list.empty()) {
+    throw UsageError("learn takes clips or --list, not both");
+  }
+  if (options.output.empty() && options.name.empty() && options.class_name.empty()) {
+    throw UsageError("learn needs --name NAME or -o FILE");
+  }
+}
+
+std::vector<TakeStretch> ChosenClips(const LearnCommandOptions& options) {
   if (!options.list.empty()) {
     return ClipsOfClass(options.list, options.class_name, options.actors, options.folders);
   }
   std::vector<TakeStretch> stretches;
   for (const auto& clip : options.clips) {
-    TakeStretch stretch = ParseTakeStretch(clip);
-    if (!std::filesystem::is_directory(stretch.file)) {
-      stretches.push_back(std::move(stretch));
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(clip, ignored)) {
+      stretches.push_back(ParseMotionArgument(clip));
       continue;
     }
-    for (auto& file : FindMotionFiles(std::vector{stretch.file})) {
+    for (auto& file : FindMotionFiles(std::vector<std::filesystem::path>{clip})) {
       stretches.push_back({.file = std::move(file)});
     }
   }
@@ -72,8 +83,7 @@ Json FailuresToJson(const std::vector<TakeFailure>& failures) {
 }
 
 MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet& features,
-                            const TakeBatch& batch, std::span<const TakeStretch> stretches,
-                            const LearnedMatrix& learned) {
+                            const TakeBatch& batch, const LearnedMatrix& learned) {
   MotionTemplate result{.name = TemplateName(options),
                         .feature_set = features.name,
                         .feature_set_hash = features.hash,
@@ -82,24 +92,18 @@ MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet
   const Profile profile = options.features.ParsedProfile();
   result.learning = ParseProfile(options.learning).value_or(profile);
   result.matching = ParseProfile(options.matching).value_or(profile);
-  // Takes are the stretches that could be read, in the same order.
-  auto take = batch.takes.begin();
-  for (const TakeStretch& stretch : stretches) {
-    if (take == batch.takes.end() || take->path != stretch.file) continue;
-    result.clips.push_back({.file = stretch.file.filename().string(),
-                            .first_frame = stretch.first_frame,
-                            .last_frame = stretch.last_frame});
-    ++take;
+  for (const TakeFeatures& take : batch.takes) {
+    result.clips.push_back({.file = take.path.filename().string(),
+                            .first_frame = take.stretch.first_frame,
+                            .last_frame = take.stretch.last_frame});
   }
   return result;
 }
 
 int Run(LearnCommandOptions& options) {
   const Stopwatch watch;
-  if (options.output.empty() && (!options.name.empty() || !options.class_name.empty())) {
-    options.output = DefaultOutput(TemplateName(options));
-  }
-  if (options.output.empty()) throw UsageError("learn needs --name NAME or -o FILE");
+  CheckUsage(options);
+  if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
   CheckWritable(options.output, options.common.overwrite());
   const FeatureSet features = options.features.Load();
   const std::vector<TakeStretch> stretches = ChosenClips(options);
@@ -120,7 +124,7 @@ int Run(LearnCommandOptions& options) {
       .max_rounds = options.max_rounds, .threads = options.common.threads, .progress = progress};
   learn.profile = ParseProfile(options.learning).value_or(options.features.ParsedProfile());
   const LearnedMatrix learned = LearnTemplate(performances, learn);
-  const MotionTemplate result = MakeTemplate(options, features, batch, stretches, learned);
+  const MotionTemplate result = MakeTemplate(options, features, batch, learned);
   WriteTemplate(result, options.output, options.common.overwrite());
   if (options.common.json) {
     Json json = {{"name", result.name},
@@ -132,12 +136,12 @@ int Run(LearnCommandOptions& options) {
     if (!batch.failures.empty()) json["failed"] = FailuresToJson(batch.failures);
     PrintJson(json);
   } else {
-    Print(fmt::format("{}: learned from {} in {}, {} long ({:.2f} s), written to {}\n", result.name,
-                      FormatCount(std::ssize(result.clips), "clip", "clips"),
-                      FormatCount(result.rounds, "round", "rounds"),
-                      FormatCount(result.matrix.column_count(), "column", "columns"),
-                      result.matrix.total_weight() / result.matrix.rate_hz,
-                      options.output.string()));
+    Print(fmt::format(
+        "{}: learned from {} in {}, {} long ({:.2f} s), written to {}\n", OnOneLine(result.name),
+        FormatCount(std::ssize(result.clips), "clip", "clips"),
+        FormatCount(result.rounds, "round", "rounds"),
+        FormatCount(result.matrix.column_count(), "column", "columns"),
+        result.matrix.total_weight() / result.matrix.rate_hz, OnOneLine(options.output.string())));
   }
   return batch.failures.empty() ? kDone : kPartFailed;
 }
@@ -177,12 +181,12 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
        {std::tuple{"--learning", &options->learning, "Learning by another profile"},
         std::tuple{"--matching", &options->matching, "Matching by another profile"}}) {
     command->add_option(name, *target, what)
-        ->check(CLI::IsMember({"bonn", "paper"}))
-        ->type_name("NAME");
+        ->check(OneOf({"bonn", "paper"}))
+        ->type_name("bonn|paper");
   }
   AddRateOption(*command, options->features.rate_hz);
   command->add_option("--max-rounds", options->max_rounds, "Rounds of learning at most")
-      ->check(CLI::Range(1, 10000))
+      ->check(WholeNumber(1, 10000))
       ->capture_default_str()
       ->type_name("N");
   AddOutputOptions(*command, options->common);

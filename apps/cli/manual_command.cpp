@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "fmt/format.h"
@@ -78,70 +79,106 @@ std::string ManPage(const CLI::App& program) {
   return out;
 }
 
-// One line of words for each command: its subcommands or its options.
+// What may follow a command, on one line: its subcommands and its options.
 std::string WordsOf(const CLI::App& command) {
   std::vector<std::string> words;
   for (const CLI::App* subcommand : Subcommands(command)) words.push_back(subcommand->get_name());
-  if (words.empty()) words = OptionNames(command);
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) continue;  // SHELL is "bash|zsh|fish".
+    std::string type = option->get_type_name();
+    if (type.find('|') == std::string::npos) continue;
+    std::ranges::replace(type, '|', ' ');
+    words.push_back(std::move(type));
+  }
+  std::ranges::copy(OptionNames(command), std::back_inserter(words));
   return fmt::format("{}", fmt::join(words, " "));
 }
 
-std::string BashCompletion(const CLI::App& program) {
-  std::string cases;
+// The lines of a case statement: from "search" or "template show" to `choices`. bash and zsh agree
+// on these.
+std::string WordsOfCommands(const CLI::App& program) {
+  std::string cases = fmt::format("    \"\") choices=\"{}\" ;;\n", WordsOf(program));
   for (const CLI::App* command : Subcommands(program)) {
-    cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), WordsOf(*command));
+    cases += fmt::format("    {}) choices=\"{}\" ;;\n", command->get_name(), WordsOf(*command));
     for (const CLI::App* action : Subcommands(*command)) {
-      cases += fmt::format("    \"{} {}\") words=\"{}\" ;;\n", command->get_name(),
+      cases += fmt::format("    \"{} {}\") choices=\"{}\" ;;\n", command->get_name(),
                            action->get_name(), WordsOf(*action));
     }
   }
-  return "_kinebase() {\n"
-         "  local current=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words=\n"
-         "  if [[ $command == template && COMP_CWORD -gt 2 ]]; then\n"
-         "    command+=\" ${COMP_WORDS[2]}\"\n"
-         "  fi\n"
-         "  [[ COMP_CWORD -eq 1 ]] && command=\n"
-         "  case $command in\n"
-         "    \"\") words=\"" +
-         WordsOf(program) + "\" ;;\n" + cases +
-         "  esac\n"
-         "  if [[ $current == -* || COMP_CWORD -eq 1 || ( $command == template && COMP_CWORD -eq 2 "
-         ") "
-         "]]; then\n"
-         "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
-         "  else\n"
-         "    mapfile -t COMPREPLY < <(compgen -f -- \"$current\")\n"
-         "  fi\n"
-         "}\n"
-         "complete -o filenames -F _kinebase kinebase\n";
+  return cases;
+}
+
+std::string BashCompletion(const CLI::App& program) {
+  return fmt::format(R"(_kinebase() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} command= choices=
+  [[ COMP_CWORD -gt 1 ]] && command=${{COMP_WORDS[1]}}
+  [[ $command == template && COMP_CWORD -gt 2 ]] && command+=" ${{COMP_WORDS[2]}}"
+  case $command in
+{}  esac
+  if [[ $current == -* || -z $command || $command == template || $command == completion ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$choices" -- "$current")
+  else
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
+}}
+complete -o filenames -F _kinebase kinebase
+)",
+                     WordsOfCommands(program));
+}
+
+std::string ZshCompletion(const CLI::App& program) {
+  return fmt::format(R"(#compdef kinebase
+_kinebase() {{
+  local command= choices=
+  (( CURRENT > 2 )) && command=${{words[2]}}
+  [[ $command == template ]] && (( CURRENT > 3 )) && command+=" ${{words[3]}}"
+  case $command in
+{}  esac
+  if [[ $PREFIX == -* || -z $command || $command == template || $command == completion ]]; then
+    compadd -- ${{=choices}}
+  else
+    _files
+  fi
+}}
+compdef _kinebase kinebase
+)",
+                     WordsOfCommands(program));
+}
+
+std::string FishQuoted(std::string text) {
+  for (std::size_t at = 0; (at = text.find_first_of("\\'", at)) != std::string::npos; at += 2) {
+    text.insert(at, 1, '\\');
+  }
+  return "'" + text + "'";
+}
+
+void AppendFishOptions(std::string& out, const CLI::App& command, std::string_view condition) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const auto& name : option->get_lnames()) {
+      out += fmt::format("complete -c kinebase -n '{}' -l {}{} -d {}\n", condition, name,
+                         ValueName(*option).empty() ? "" : " -r",
+                         FishQuoted(option->get_description()));
+    }
+  }
 }
 
 std::string FishCompletion(const CLI::App& program) {
-  const auto quoted = [](std::string text) {
-    for (std::size_t at = 0; (at = text.find_first_of("\\'", at)) != std::string::npos; at += 2) {
-      text.insert(at, 1, '\\');
-    }
-    return "'" + text + "'";
-  };
   std::string out;
   for (const CLI::App* command : Subcommands(program)) {
     out += fmt::format("complete -c kinebase -n __fish_use_subcommand -f -a {} -d {}\n",
-                       command->get_name(), quoted(command->get_description()));
-    std::vector<const CLI::App*> with_options = Subcommands(*command);
-    for (const CLI::App* action : with_options) {
-      out +=
-          fmt::format("complete -c kinebase -n '__fish_seen_subcommand_from {}' -f -a {} -d {}\n",
-                      command->get_name(), action->get_name(), quoted(action->get_description()));
+                       command->get_name(), FishQuoted(command->get_description()));
+    // `render` is a command and what one does with a template.
+    const std::string seen = fmt::format("__fish_seen_subcommand_from {}", command->get_name());
+    const auto actions = Subcommands(*command);
+    if (actions.empty()) {
+      AppendFishOptions(out, *command, seen + "; and not __fish_seen_subcommand_from template");
     }
-    if (with_options.empty()) with_options = {command};
-    for (const CLI::App* app : with_options) {
-      for (const CLI::Option* option : app->get_options()) {
-        for (const auto& name : option->get_lnames()) {
-          out +=
-              fmt::format("complete -c kinebase -n '__fish_seen_subcommand_from {}' -l {} -d {}\n",
-                          app->get_name(), name, quoted(option->get_description()));
-        }
-      }
+    for (const CLI::App* action : actions) {
+      out += fmt::format("complete -c kinebase -n '{}' -f -a {} -d {}\n", seen, action->get_name(),
+                         FishQuoted(action->get_description()));
+      AppendFishOptions(
+          out, *action,
+          fmt::format("{}; and __fish_seen_subcommand_from {}", seen, action->get_name()));
     }
   }
   return out;
@@ -159,15 +196,16 @@ void AddManualCommands(CLI::App& program, int& exit_code) {
 
   auto shell = std::make_shared<std::string>();
   CLI::App* completion = program.add_subcommand("completion", "Print completions for a shell");
-  completion->add_option("SHELL", *shell, "bash, zsh or fish")
+  completion->add_option("SHELL", *shell, "Whose completions")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+      ->check(OneOf({"bash", "zsh", "fish"}))
+      ->type_name("bash|zsh|fish");
   completion->footer("Example:\n  source <(kinebase completion bash)");
   completion->callback([&program, &exit_code, shell] {
     if (*shell == "fish") {
       Print(FishCompletion(program));
     } else if (*shell == "zsh") {
-      Print("autoload -U +X bashcompinit && bashcompinit\n" + BashCompletion(program));
+      Print(ZshCompletion(program));
     } else {
       Print(BashCompletion(program));
     }

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "fmt/format.h"
@@ -33,9 +34,9 @@ StandardJoint ParseTrail(const std::string& name) {
 }
 
 PoseStripRow LoadRow(const std::string& text, const RenderOptions& options) {
-  TakeStretch stretch = ParseTakeStretch(text);
+  TakeStretch stretch = ParseMotionArgument(text);
   if (stretch.first_frame == 0 && !options.frames.empty()) {
-    stretch = ParseTakeStretch(text + ':' + options.frames);
+    stretch = ParseMotionArgument(text + ':' + options.frames);
     if (stretch.first_frame == 0) throw UsageError("--frames takes first-last, as in 120-480");
   }
   const LoadedMotion loaded = LoadMotion(stretch.file, options.common.load);
@@ -57,7 +58,7 @@ int Run(const RenderOptions& options) {
   if (options.common.json) {
     PrintJson({{"file", options.output.string()}, {"recordings", rows.size()}});
   } else {
-    PrintNote(options.common, "written to " + options.output.string());
+    PrintWritten(options.common, options.output);
   }
   return kDone;
 }
@@ -72,17 +73,19 @@ void AddRenderCommand(CLI::App& program, int& exit_code) {
       ->required();
   command->add_option("-o,--output", options->output, "Picture: .png or .svg")
       ->required()
+      ->check(PictureFile())
       ->type_name("FILE");
   command->add_option("--frames", options->frames, "Only these frames of each motion: first-last")
       ->type_name("RANGE");
   command->add_option("--view", options->view, "Where the camera stands, seen from the first pose")
-      ->check(CLI::IsMember({"front", "side", "top", "three-quarter"}))
+      ->check(OneOf({"front", "side", "top", "three-quarter"}))
+      ->type_name("front|side|top|three-quarter")
       ->capture_default_str();
   command->add_option("--trail", options->trails, "Draw the way of these joints: rwrist,lwrist")
       ->delimiter(',')
       ->type_name("JOINT");
   command->add_option("--poses", options->poses, "Poses in a row")
-      ->check(CLI::Range(1, 200))
+      ->check(WholeNumber(1, 200))
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--no-floor", options->no_floor, "No grid on the floor");

@@ -4,20 +4,19 @@
 #include <memory>
 #include <set>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/take_search.h"
 #include "kinebase/library/takes.h"
-#include "kinebase/search/template_search.h"
 #include "kinebase/templates/quantized_template.h"
 #include "kinebase/templates/template_file.h"
 
 namespace kinebase::cli {
 namespace {
-
-constexpr double kDefaultTau = 0.06;  // Müller & Röder, SCA 2006, Sect. 5.4.
 
 struct SearchCommandOptions {
   CommonOptions common;
@@ -37,17 +36,11 @@ struct Query {
   FeatureSet features;
 };
 
-// A hit in the terms of its file: frames 1-based, inclusive.
-struct FileHit {
+// A hit with the names that people know it by.
+struct NamedHit {
   std::string template_name;
   std::filesystem::path file;
-  std::int64_t first_frame = 0;
-  std::int64_t last_frame = 0;
-  double rate_hz = 0;
-  double cost = 0;
-
-  [[nodiscard]] double start_s() const { return static_cast<double>(first_frame - 1) / rate_hz; }
-  [[nodiscard]] double end_s() const { return static_cast<double>(last_frame) / rate_hz; }
+  TakeHit hit;
 };
 
 // The recordings with the features of one set at one rate; templates that agree in both share them.
@@ -55,11 +48,7 @@ using FeatureKey = std::pair<std::uint64_t, double>;
 
 Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& options) {
   Query query{.motion_template = ReadTemplate(path)};
-  try {
-    query.features = FeatureSetOfTemplate(query.motion_template, options.feature_set);
-  } catch (const Error& error) {
-    throw Error(error.code(), error.message(), {path});
-  }
+  query.features = FeatureSetOfTemplate(path, query.motion_template, options.feature_set);
   if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);
   if (const auto profile = ParseProfile(options.profile)) query.motion_template.matching = *profile;
   return query;
@@ -69,27 +58,17 @@ QuantizedTemplate Quantized(const MotionTemplate& motion_template) {
   return Quantize(motion_template.matrix, motion_template.quantisation, motion_template.matching);
 }
 
-std::vector<FileHit> SearchOne(const Query& query, const TakeBatch& batch,
-                               const SearchCommandOptions& options,
-                               const ProgressCallback& progress) {
-  std::vector<FeatureMatrix> recordings;
-  for (const TakeFeatures& take : batch.takes) recordings.push_back(take.features);
+std::vector<NamedHit> SearchOne(const Query& query, const TakeBatch& batch,
+                                const SearchCommandOptions& options,
+                                const ProgressCallback& progress) {
   const SearchOptions search{
       .tau = options.tau.value_or(query.motion_template.tau.value_or(kDefaultTau)),
       .most_hits = options.most_hits,
       .threads = options.common.threads,
       .progress = progress};
-  std::vector<FileHit> hits;
-  for (const Hit& hit : SearchTemplate(Quantized(query.motion_template), recordings, search)) {
-    const TakeFeatures& take = batch.takes[static_cast<std::size_t>(hit.recording)];
-    const FrameRange frames =
-        FramesOfColumns(hit.first, hit.last, take.features.rate_hz, take.rate_hz, take.frame_count);
-    hits.push_back({.template_name = query.motion_template.name,
-                    .file = take.path,
-                    .first_frame = frames.first + 1,
-                    .last_frame = frames.last + 1,
-                    .rate_hz = take.rate_hz,
-                    .cost = hit.cost});
+  std::vector<NamedHit> hits;
+  for (const TakeHit& hit : SearchTakes(Quantized(query.motion_template), batch.takes, search)) {
+    hits.push_back({query.motion_template.name, batch.takes[hit.take].path, hit});
   }
   return hits;
 }
@@ -115,16 +94,16 @@ std::string CurveTable(const Query& query, const TakeBatch& batch) {
   return text;
 }
 
-Json ToJson(const std::vector<FileHit>& hits, const std::vector<TakeFailure>& failures,
+Json ToJson(const std::vector<NamedHit>& hits, const std::vector<TakeFailure>& failures,
             std::int64_t frames, double elapsed_s) {
   Json list = Json::array();
-  for (const FileHit& hit : hits) {
-    list.push_back({{"template", hit.template_name},
-                    {"file", hit.file.string()},
+  for (const auto& [template_name, file, hit] : hits) {
+    list.push_back({{"template", template_name},
+                    {"file", file.string()},
                     {"first_frame", hit.first_frame},
                     {"last_frame", hit.last_frame},
-                    {"start_s", hit.start_s()},
-                    {"end_s", hit.end_s()},
+                    {"start_s", hit.start_s},
+                    {"end_s", hit.end_s},
                     {"cost", hit.cost}});
   }
   Json json = {{"hits", std::move(list)}, {"scanned_frames", frames}, {"elapsed_s", elapsed_s}};
@@ -138,16 +117,15 @@ Json ToJson(const std::vector<FileHit>& hits, const std::vector<TakeFailure>& fa
   return json;
 }
 
-std::string ToText(const std::vector<FileHit>& hits, bool many_templates) {
+std::string ToText(const std::vector<NamedHit>& hits, bool many_templates) {
   std::vector<std::string> titles = {">cost", ">frames", ">time", "file"};
   if (many_templates) titles.insert(titles.begin() + 1, "template");
   TextTable table(std::move(titles));
-  for (const FileHit& hit : hits) {
+  for (const auto& [template_name, file, hit] : hits) {
     std::vector<std::string> cells = {
         fmt::format("{:.4f}", hit.cost), fmt::format("{}-{}", hit.first_frame, hit.last_frame),
-        fmt::format("{}-{}", FormatTime(hit.start_s()), FormatTime(hit.end_s())),
-        hit.file.string()};
-    if (many_templates) cells.insert(cells.begin() + 1, hit.template_name);
+        fmt::format("{}-{}", FormatTime(hit.start_s), FormatTime(hit.end_s)), file.string()};
+    if (many_templates) cells.insert(cells.begin() + 1, template_name);
     table.Add(std::move(cells));
   }
   return table.ToString();
@@ -166,7 +144,7 @@ int Run(const SearchCommandOptions& options) {
 
   const ProgressCallback progress = MakeProgress(options.common);
   std::map<FeatureKey, TakeBatch> batches;
-  std::vector<FileHit> hits;
+  std::vector<NamedHit> hits;
   for (const Query& query : queries) {
     const double rate_hz = query.motion_template.matrix.rate_hz;
     const auto [entry, is_new] = batches.try_emplace({query.features.hash, rate_hz});
@@ -179,7 +157,7 @@ int Run(const SearchCommandOptions& options) {
     hits.insert(hits.end(), std::make_move_iterator(found.begin()),
                 std::make_move_iterator(found.end()));
   }
-  std::ranges::stable_sort(hits, {}, &FileHit::cost);
+  std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.cost; });
   if (hits.size() > options.most_hits) hits.resize(options.most_hits);
 
   const TakeBatch& batch = batches.begin()->second;  // All read the same files.
@@ -219,9 +197,10 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   command
       ->add_option("--tau", options->tau,
                    "Largest cost of a hit (default: the template's own, else 0.06); 1 lists all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(NonNegativeNumber())
       ->type_name("COST");
   command->add_option("--top", options->most_hits, "Hits at most")
+      ->check(WholeNumber(0))
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--mirror", options->mirror,

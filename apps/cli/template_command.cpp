@@ -2,11 +2,13 @@
 
 #include <memory>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
 #include "kinebase/pictures/template_picture.h"
+#include "kinebase/search/template_search.h"
 #include "kinebase/templates/quantized_template.h"
 #include "kinebase/templates/template_file.h"
 
@@ -40,9 +42,9 @@ std::string ConsistencyText(const MotionTemplate& motion_template) {
 
 std::string Describe(const MotionTemplate& motion_template) {
   const TemplateMatrix& matrix = motion_template.matrix;
-  std::string text = motion_template.name + '\n';
+  std::string text = OnOneLine(motion_template.name) + '\n';
   const auto line = [&](std::string_view name, const std::string& value) {
-    text += fmt::format("  {:<11}{}\n", name, value);
+    text += fmt::format("  {:<11}{}\n", name, OnOneLine(value));
   };
   line("length", fmt::format("{} at {:g} Hz, {:.2f} s",
                              FormatCount(matrix.column_count(), "column", "columns"),
@@ -54,7 +56,7 @@ std::string Describe(const MotionTemplate& motion_template) {
                               ToString(motion_template.matching)));
   line("threshold", motion_template.tau
                         ? fmt::format("{:g} ({})", *motion_template.tau, motion_template.tau_origin)
-                        : std::string("none of its own; 0.06 is used"));
+                        : fmt::format("none of its own; {:g} is used", kDefaultTau));
   line("learned",
        fmt::format("from {} in {}", FormatCount(std::ssize(motion_template.clips), "clip", "clips"),
                    FormatCount(motion_template.rounds, "round", "rounds")));
@@ -75,12 +77,14 @@ int Show(const TemplateOptions& options) {
 int Render(const TemplateOptions& options) {
   CheckWritable(options.output, options.common.overwrite());
   const MotionTemplate motion_template = ReadTemplate(options.file);
-  DrawTemplate(motion_template, FeatureSetOfTemplate(motion_template, options.feature_set),
-               options.output, options.common.overwrite(), {.quantized = options.quantized});
+  const FeatureSet features =
+      FeatureSetOfTemplate(options.file, motion_template, options.feature_set);
+  DrawTemplate(motion_template, features, options.output, options.common.overwrite(),
+               {.quantized = options.quantized});
   if (options.common.json) {
     PrintJson({{"file", options.output.string()}});
   } else {
-    PrintNote(options.common, "written to " + options.output.string());
+    PrintWritten(options.common, options.output);
   }
   return kDone;
 }
@@ -88,8 +92,9 @@ int Render(const TemplateOptions& options) {
 int Mirror(const TemplateOptions& options) {
   CheckWritable(options.output, options.common.overwrite());
   const MotionTemplate motion_template = ReadTemplate(options.file);
-  MotionTemplate mirrored =
-      MirrorTemplate(motion_template, FeatureSetOfTemplate(motion_template, options.feature_set));
+  const FeatureSet features =
+      FeatureSetOfTemplate(options.file, motion_template, options.feature_set);
+  MotionTemplate mirrored = MirrorTemplate(motion_template, features);
   if (!options.name.empty()) mirrored.name = options.name;
   WriteTemplate(mirrored, options.output, options.common.overwrite());
   if (options.common.json) {
@@ -128,6 +133,7 @@ void AddTemplateCommand(CLI::App& program, int& exit_code) {
                                "Draw a template: features over time", &Render);
   render->add_option("-o,--output", options->output, "Picture: .png or .svg")
       ->required()
+      ->check(PictureFile())
       ->type_name("FILE");
   render->add_flag("--quantized", options->quantized, "As it is matched: always, never, free");
   render->footer("Example:\n  kinebase template render squat.template.json -o squat.svg");

@@ -1,7 +1,7 @@
 # Sourced by the scripts: going to the project's root, talking, configuring and building quietly.
 # shellcheck shell=bash
 
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
 
 # Compilations are remembered between build folders where ccache is there; it is not needed.
 if command -v ccache >/dev/null; then

@@ -76,6 +76,7 @@ def main(hits_file, clips, truth, class_name, searched):
     result = json.loads(hits_file.read_text())
     hits = result["hits"]
     names = {pathlib.Path(line).name for line in searched.read_text().splitlines()}
+    names -= {pathlib.Path(failure["file"]).name for failure in result.get("failed", [])}
     stretches = read_truth(clips, truth, names)
     verdicts = [judge(hit, stretches, class_name) for hit in hits]
     if hits:

@@ -24,12 +24,12 @@ namespace {
               "exists already; choose another name or overwrite it with --force", {.file = path});
 }
 
-// A name beside `path` that no other thread or process uses.
+// A name beside `path` that no other thread or process uses. It does not contain that of `path`,
+// which may be as long as the system allows.
 std::filesystem::path TemporaryName(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
-  std::filesystem::path name = path;
-  name += ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
-  return name;
+  return path.parent_path() /
+         (".kinebase-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
 }
 
 // Writes and flushes; 0 or the system's error number.
@@ -63,7 +63,8 @@ int Publish(const std::filesystem::path& temporary, const std::filesystem::path&
   }
   if (errno == EEXIST) return EEXIST;
   // A file system without hard links: the check and the rename are two steps there.
-  if (std::filesystem::exists(path)) return EEXIST;
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return EEXIST;
   return ::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
 }
 
@@ -74,20 +75,32 @@ void CheckWritable(const std::filesystem::path& path, Overwrite overwrite) {
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error(ErrorCode::kIoFailure, "is a folder; name a file", {.file = path});
   }
-  if (overwrite == Overwrite::kNo && std::filesystem::exists(path, ignored)) {
-    ThrowAlreadyExists(path);
+  const bool is_there = std::filesystem::exists(path, ignored);
+  if (is_there && !std::filesystem::is_regular_file(path, ignored)) {
+    // A device such as /dev/null would be replaced by a file, for every program on the machine.
+    throw Error(ErrorCode::kIoFailure, "is no regular file; name another", {.file = path});
   }
+  if (overwrite == Overwrite::kNo && is_there) ThrowAlreadyExists(path);
 }
 
-void WriteFile(const std::filesystem::path& path, std::string_view contents, Overwrite overwrite) {
-  CheckWritable(path, overwrite);
+void WriteFile(const std::filesystem::path& named_path, std::string_view contents,
+               Overwrite overwrite) {
+  CheckWritable(named_path, overwrite);
+  // A link stays, and what it points to is written.
+  std::error_code not_there;
+  const std::filesystem::path target = std::filesystem::canonical(named_path, not_there);
+  const std::filesystem::path& path = not_there ? named_path : target;
   if (path.has_parent_path()) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
     if (error) ThrowIoFailure(path.parent_path(), error.value());
   }
-  const std::filesystem::path temporary = TemporaryName(path);
-  int error = WriteDurably(temporary, contents);
+  std::filesystem::path temporary;
+  int error = 0;
+  do {  // A process that crashed under the same number may have left one behind.
+    temporary = TemporaryName(path);
+    error = WriteDurably(temporary, contents);
+  } while (error == EEXIST);
   if (error == 0) error = Publish(temporary, path, overwrite);
   if (error == 0) return;
   ::unlink(temporary.c_str());

@@ -7,7 +7,10 @@
 #include <thread>
 #include <vector>
 
+#include "kinebase/core/error.h"
+
 #ifndef KINEBASE_THREAD_SANITIZER
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
@@ -68,11 +71,26 @@ void ParallelFor(std::size_t count, int threads, const std::function<void(std::s
     for (int i = 0; i < threads; ++i) workers.emplace_back(work);
     workers.clear();
 #else
+    // More than there are cores gain nothing, and TBB complains about them on standard error.
+    threads = std::min(threads, tbb::info::default_concurrency());
     tbb::task_arena arena(threads);
     arena.execute([&] { tbb::parallel_for(0, threads, [&](int) { work(); }); });
 #endif
   }
   failure.Rethrow();
+}
+
+void ParallelFor(std::size_t count, int threads, std::string_view what,
+                 const ProgressCallback& progress, const std::function<void(std::size_t)>& body) {
+  std::mutex mutex;
+  std::size_t done = 0;
+  ParallelFor(count, threads, [&](std::size_t i) {
+    body(i);
+    if (!progress) return;
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (!progress(what, done, count)) throw Error(ErrorCode::kCancelled, "cancelled");
+  });
 }
 
 }  // namespace kinebase

@@ -23,6 +23,11 @@ using Eigen::Vector3d;
 // must give NaN, which passes no test.
 Vector3d Unit(const Vector3d& v) { return v / v.norm(); }
 
+// Unlike std::min and std::max these never lose a NaN: where a joint is missing, so is what is
+// measured by it.
+double Smaller(double a, double b) { return a < b || std::isnan(a) ? a : b; }
+double Larger(double a, double b) { return a > b || std::isnan(a) ? a : b; }
+
 double AngleDegrees(const Vector3d& a, const Vector3d& b) {
   const double cosine = a.dot(b) / (a.norm() * b.norm());
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
@@ -142,14 +147,14 @@ class TermEvaluator {
     for (int j = 0; j < kStandardJointCount; ++j) {
       const auto joint = static_cast<StandardJoint>(j);
       if (std::ranges::find(term_.ignored_joints, joint) != term_.ignored_joints.end()) continue;
-      low = std::min(low, joints_.at(t, joint).y());
+      low = Smaller(low, joints_.at(t, joint).y());
     }
     return low;
   }
 
   double HighestY(int t) const {
     double high = -std::numeric_limits<double>::infinity();
-    for (int j = 0; j < kStandardJointCount; ++j) high = std::max(high, joints_.at(t, j).y());
+    for (int j = 0; j < kStandardJointCount; ++j) high = Larger(high, joints_.at(t, j).y());
     return high;
   }
 
@@ -168,7 +173,7 @@ class TermEvaluator {
       for (std::size_t b = 0; b < a; ++b) {
         const double dx = points[a].x() - points[b].x();
         const double dz = points[a].z() - points[b].z();
-        largest = std::max(largest, dx * dx + dz * dz);
+        largest = Larger(largest, dx * dx + dz * dz);
       }
     }
     return std::sqrt(largest);
@@ -204,7 +209,7 @@ std::vector<double> Evaluate(const JointTrajectories& joints, const Feature& fea
     const std::vector<double> term = TermEvaluator(joints, feature.terms[i]).Evaluate();
     for (std::size_t t = 0; t < values.size(); ++t) {
       values[t] = feature.combination == TermCombination::kSum ? values[t] + term[t]
-                                                               : std::min(values[t], term[t]);
+                                                               : Smaller(values[t], term[t]);
     }
   }
   return values;
@@ -237,22 +242,34 @@ bool Passes(double value, ThresholdTest test, const Threshold& threshold, double
 std::vector<double> FeatureValues(const JointTrajectories& standard_joints,
                                   const FeatureSet& features, int feature) {
   CheckStandardJoints(standard_joints);
+  if (feature < 0 || feature >= features.feature_count()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("no feature {}: the set '{}' has 0 to {}", feature, features.name,
+                            features.feature_count() - 1));
+  }
   JointTrajectories storage;
   return Evaluate(AtRate(standard_joints, features.rate_hz, storage),
-                  features.features.at(static_cast<std::size_t>(feature)));
+                  features.features[static_cast<std::size_t>(feature)]);
+}
+
+void CheckColumnRate(const FeatureSet& features, double rate_hz) {
+  constexpr double kLargestStep = 1e9;  // Longer than any recording, and llround can hold it.
+  const double ratio = features.rate_hz / rate_hz;
+  if (rate_hz > 0 && ratio <= kLargestStep && std::round(ratio) >= 1 &&
+      std::abs(ratio - std::round(ratio)) <= 1e-9) {
+    return;
+  }
+  throw Error(ErrorCode::kInvalidArgument,
+              fmt::format("rate {} Hz must divide the feature set's rate of {} Hz evenly, as "
+                          "{} Hz does",
+                          rate_hz, features.rate_hz, features.rate_hz / 4));
 }
 
 FeatureMatrix ExtractFeatures(const JointTrajectories& standard_joints, const FeatureSet& features,
                               double rate_hz) {
   CheckStandardJoints(standard_joints);
-  const double ratio = features.rate_hz / rate_hz;
-  const auto step = static_cast<std::size_t>(std::llround(ratio));
-  if (!(rate_hz > 0) || step < 1 || std::abs(ratio - static_cast<double>(step)) > 1e-9) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("rate {} Hz must divide the feature set's rate of {} Hz evenly, as "
-                            "{} Hz does",
-                            rate_hz, features.rate_hz, features.rate_hz / 4));
-  }
+  CheckColumnRate(features, rate_hz);
+  const auto step = static_cast<std::size_t>(std::llround(features.rate_hz / rate_hz));
   JointTrajectories storage;
   const JointTrajectories& joints = AtRate(standard_joints, features.rate_hz, storage);
   const auto samples = static_cast<std::size_t>(joints.frame_count());
@@ -282,16 +299,18 @@ FrameRange FramesOfColumns(int first_column, int last_column, double column_rate
   // Frame i stands for time i / rate; a span of time holds the frames from its start up to its end.
   constexpr double kRounding = 1e-6;
   const double frames_a_column = recording_rate_hz / column_rate_hz;
-  const auto frame_from = [&](int column) {
-    return static_cast<std::int64_t>(std::ceil(column * frames_a_column - kRounding));
+  const auto to_frame = [&](double frame) {
+    return static_cast<std::int64_t>(std::clamp(frame, 0.0, static_cast<double>(frame_count - 1)));
   };
-  const std::int64_t end = frame_count - 1;
-  // Where a column is shorter than a frame, it belongs to the frame that goes on during it.
-  const auto during = static_cast<std::int64_t>(first_column * frames_a_column + kRounding);
-  FrameRange range;
-  range.last = std::clamp<std::int64_t>(frame_from(last_column + 1) - 1, 0, end);
-  range.first = std::clamp<std::int64_t>(frame_from(first_column), 0, end);
-  if (range.first > range.last) range.first = range.last = std::clamp<std::int64_t>(during, 0, end);
+  const auto frame_from = [&](double column) {
+    return std::ceil(column * frames_a_column - kRounding);
+  };
+  FrameRange range{.first = to_frame(frame_from(first_column)),
+                   .last = to_frame(frame_from(last_column + 1.0) - 1)};
+  if (range.first > range.last) {
+    // A column shorter than a frame belongs to the frame that goes on during it.
+    range.first = range.last = to_frame(first_column * frames_a_column + kRounding);
+  }
   return range;
 }
 

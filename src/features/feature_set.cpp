@@ -12,6 +12,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/motion.h"
 #include "toml++/toml.h"
 
 namespace kinebase {
@@ -94,9 +95,12 @@ class FeatureSetReader {
     CheckHeader(root);
     CheckKeys(root, {"format", "version", "name", "description", "rate_hz", "lengths", "feature"});
     set_.name = Text(root, "name");
-    set_.description = root["description"].value_or(std::string());
+    set_.description = OptionalText(root, "description", "");
     set_.rate_hz = NumberOr(root, "rate_hz", 120);
-    if (!(set_.rate_hz > 0)) Fail(root, "'rate_hz' must be positive");
+    if (set_.rate_hz < kSmallestRateHz || set_.rate_hz > kLargestRateHz) {
+      Fail(root,
+           fmt::format("'rate_hz' must lie between {} and {}", kSmallestRateHz, kLargestRateHz));
+    }
     ReadLengths(root);
     ReadFeatures(root);
     LinkMirrors();
@@ -135,10 +139,25 @@ class FeatureSetReader {
     return *value;
   }
 
+  std::string OptionalText(const toml::table& table, std::string_view key,
+                           std::string_view otherwise) const {
+    if (!table.contains(key)) return std::string(otherwise);
+    const auto* text = table[key].as_string();
+    if (text == nullptr) Fail(*table.get(key), fmt::format("'{}' must be a text", key));
+    return text->get();
+  }
+
+  bool Flag(const toml::table& table, std::string_view key) const {
+    if (!table.contains(key)) return false;
+    const auto* flag = table[key].as_boolean();
+    if (flag == nullptr) Fail(*table.get(key), fmt::format("'{}' must be true or false", key));
+    return flag->get();
+  }
+
   double NumberOr(const toml::table& table, std::string_view key, double otherwise) const {
     if (!table.contains(key)) return otherwise;
     const auto value = table[key].value<double>();
-    if (!value || !std::isfinite(*value)) {
+    if (!value || !std::isfinite(*value) || table[key].is_boolean()) {
       Fail(*table.get(key), fmt::format("'{}' must be a number", key));
     }
     return *value;
@@ -166,14 +185,19 @@ class FeatureSetReader {
   }
 
   void ReadLengths(const toml::table& root) {
+    if (!root.contains("lengths")) return;
     const toml::table* lengths = root["lengths"].as_table();
-    if (lengths == nullptr) return;
+    if (lengths == nullptr) Fail(*root.get("lengths"), "[lengths] must be a table");
     for (const auto& [name, value] : *lengths) {
       const toml::array* segments = value.as_array();
       if (segments == nullptr || segments->empty()) {
         Fail(value, "a length is a list of pairs of joints: [[\"rshoulder\", \"relbow\"]]");
       }
       BodyLength length{.name = std::string(name.str())};
+      if (length.name == "cm" || length.name == "deg" || length.name.ends_with("/s")) {
+        Fail(value,
+             fmt::format("'{}' is a unit already; a length needs another name", length.name));
+      }
       for (const toml::node& segment : *segments) {
         const toml::array* pair = segment.as_array();
         if (pair == nullptr || pair->size() != 2) Fail(segment, "expected a pair of joints");
@@ -202,7 +226,7 @@ class FeatureSetReader {
                       "terms"});
     Feature feature{.id = Text(table, "id"),
                     .name = Text(table, "name"),
-                    .group = table["group"].value_or(std::string())};
+                    .group = OptionalText(table, "group", "")};
     if (set_.Find(feature.id)) Fail(table, fmt::format("a second feature '{}'", feature.id));
     feature.test = Choice(table, "test", kTests, "above");
     feature.combination = Choice(table, "combine", kCombinations, "sum");
@@ -214,7 +238,7 @@ class FeatureSetReader {
     }
     const Quantity quantity = ReadTerms(table, feature);
     feature.length = ReadUnit(table, quantity);
-    mirrors_.push_back(table["mirror"].value_or(feature.id));
+    mirrors_.push_back(OptionalText(table, "mirror", feature.id));
     lines_.push_back(table.source().begin.line);
     set_.features.push_back(std::move(feature));
   }
@@ -223,7 +247,7 @@ class FeatureSetReader {
   Value Choice(const toml::table& table, std::string_view key,
                const std::array<std::pair<std::string_view, Value>, kCount>& choices,
                std::string_view otherwise) const {
-    const std::string text = table[key].value_or(std::string(otherwise));
+    const std::string text = OptionalText(table, key, otherwise);
     std::string known;
     for (const auto& [name, value] : choices) {
       if (name == text) return value;
@@ -278,7 +302,7 @@ class FeatureSetReader {
                      .joints = Joints(table, "joints"),
                      .ignored_joints = Joints(table, "ignore"),
                      .window_ms = NumberOr(table, "window_ms", 0),
-                     .absolute = table["absolute"].value_or(false),
+                     .absolute = Flag(table, "absolute"),
                      .factor = NumberOr(table, "factor", 1)};
     if (row->joint_count >= 0 && static_cast<int>(term.joints.size()) != row->joint_count) {
       Fail(table, fmt::format("'{}' takes {} joints, found {}", name, row->joint_count,
@@ -341,7 +365,7 @@ class FeatureSetReader {
     }
   }
 
-  // FNV-1a over everything that decides a bit.
+  // FNV-1a over everything that decides a bit, also after mirroring.
   std::uint64_t Hash() const {
     std::uint64_t hash = 0xCBF29CE484222325ULL;
     const auto add = [&](std::uint64_t value) {
@@ -349,7 +373,9 @@ class FeatureSetReader {
         hash = (hash ^ ((value >> (8 * byte)) & 0xFF)) * 0x100000001B3ULL;
       }
     };
-    const auto add_number = [&](double value) { add(std::bit_cast<std::uint64_t>(value)); };
+    const auto add_number = [&](double value) {
+      add(std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value));  // −0 is 0.
+    };
     const auto add_joints = [&](const std::vector<StandardJoint>& joints) {
       add(joints.size());
       for (const StandardJoint joint : joints) add(static_cast<std::uint64_t>(joint));
@@ -371,8 +397,14 @@ class FeatureSetReader {
         add_number(threshold.low);
         add_number(threshold.high);
       }
-      if (feature.length < 0) continue;
-      for (const auto& [a, b] : set_.lengths[static_cast<std::size_t>(feature.length)].segments) {
+      add(static_cast<std::uint64_t>(feature.mirror));
+      if (feature.length < 0) {
+        add(0);
+        continue;
+      }
+      const auto& segments = set_.lengths[static_cast<std::size_t>(feature.length)].segments;
+      add(segments.size());
+      for (const auto& [a, b] : segments) {
         add(static_cast<std::uint64_t>(a));
         add(static_cast<std::uint64_t>(b));
       }
@@ -396,6 +428,7 @@ std::optional<int> FeatureSet::Find(std::string_view id) const {
 
 std::vector<int> FeatureSet::MirrorRows() const {
   std::vector<int> rows;
+  rows.reserve(features.size());
   for (const Feature& feature : features) rows.push_back(feature.mirror);
   return rows;
 }
@@ -421,7 +454,8 @@ FeatureSet LoadFeatureSet(std::string_view name_or_path) {
                            std::string(name_or_path) + ".toml");
   }
   const std::filesystem::path path(name_or_path);
-  if (!std::filesystem::exists(path)) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(path, unreachable)) {
     throw Error(ErrorCode::kNotFound,
                 fmt::format("no feature set {}: neither a file nor one of the built-in {}",
                             Quoted(name_or_path), fmt::join(built_in, ", ")));

@@ -45,7 +45,7 @@ bool TakeNumber(std::string_view& text, double& value) {
 }
 
 void SkipBlanks(std::string_view& text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '\r')) {
+  while (!text.empty() && (text.front() == ' ' || (text.front() >= '\t' && text.front() <= '\r'))) {
     text.remove_prefix(1);
   }
 }
@@ -60,12 +60,16 @@ class AmcParser {
       try {
         TakeLine();
       } catch (const Error&) {
-        // A last line without its end that makes no sense was cut off, as the file was.
-        if (lines_.line_is_terminated() || amc_.frame_numbers.size() < 2 || options_.strict) throw;
+        // A last line without its end that makes no sense was cut off, as the file was. Within the
+        // first frame nothing says which bones it should have had.
+        const bool in_first = in_first_frame() && !IsFrameLine(lines_.line());
+        const bool may_be_cut = !lines_.line_is_terminated() && !amc_.frame_numbers.empty();
+        if (!may_be_cut || in_first || options_.strict) throw;
         last_line_is_cut_ = true;
       }
     }
     FinishLastFrame();
+    ReportJumps();
     return std::move(amc_);
   }
 
@@ -76,18 +80,37 @@ class AmcParser {
 
   bool in_first_frame() const { return amc_.frame_numbers.size() == 1; }
 
+  static bool IsFrameLine(std::string_view line) {
+    SkipBlanks(line);
+    return !line.empty() && (IsDigit(line.front()) || line.front() == '+' || line.front() == '-');
+  }
+
   void TakeLine() {
     std::string_view line = lines_.line();
     SkipBlanks(line);
+    last_line_has_values_ = false;
     if (line.empty()) return;
     const char first = line.front();
-    if (IsDigit(first) || first == '+' || first == '-') {
-      BeginFrame(Trim(line));
-    } else if (first == '#' || first == ':') {
+    if (first == '#' || first == ':') {
       KeepRemark(lines_.line());
+      return;
+    }
+    const std::string_view comment = TakeComment(line);
+    if (IsFrameLine(line)) {
+      BeginFrame(Trim(line));
     } else {
       TakeBoneLine(line);
     }
+    if (!comment.empty()) KeepRemark(comment);
+  }
+
+  // Takes a comment off the end of a line.
+  static std::string_view TakeComment(std::string_view& line) {
+    const std::size_t hash = line.find('#');
+    if (hash == std::string_view::npos) return {};
+    const std::string_view comment = line.substr(hash);
+    line.remove_suffix(comment.size());
+    return comment;
   }
 
   void KeepRemark(std::string_view line) {
@@ -97,11 +120,13 @@ class AmcParser {
       return;
     }
     amc_.header.emplace_back(line);
-    const std::string_view keyword = Trim(line);
-    if (EqualsIgnoringCase(keyword, ":degrees")) amc_.angle_unit = AmcAngleUnit::kDegrees;
-    if (EqualsIgnoringCase(keyword, ":radians")) amc_.angle_unit = AmcAngleUnit::kRadians;
-    if (EqualsIgnoringCase(keyword, ":force-all-joints-be-3dof")) {
-      amc_.all_bones_have_three_dofs = true;
+    // Several keywords on a line and a comment after them do no harm.
+    for (const auto keyword : SplitTokens(line.substr(0, line.find('#')))) {
+      if (EqualsIgnoringCase(keyword, ":degrees")) amc_.angle_unit = AmcAngleUnit::kDegrees;
+      if (EqualsIgnoringCase(keyword, ":radians")) amc_.angle_unit = AmcAngleUnit::kRadians;
+      if (EqualsIgnoringCase(keyword, ":force-all-joints-be-3dof")) {
+        amc_.all_bones_have_three_dofs = true;
+      }
     }
   }
 
@@ -125,12 +150,8 @@ class AmcParser {
       if (*number <= before) {
         Fail(fmt::format("frame {} after frame {}: frame numbers must grow", *number, before));
       }
-      if (*number != before + 1) {
-        amc_.diagnostics.push_back(
-            {Severity::kWarning,
-             fmt::format("frame {} follows frame {}: numbers jump, time is taken to go on evenly",
-                         *number, before),
-             lines_.line_number()});
+      if (*number != before + 1 && jumps_++ == 0) {
+        first_jump_ = {before, *number, lines_.line_number()};
       }
     }
     amc_.frame_numbers.push_back(*number);
@@ -153,6 +174,7 @@ class AmcParser {
       ReadBone(line);
     }
     ++bones_in_frame_;
+    last_line_has_values_ = true;
   }
 
   // A line of the first frame: a new bone with as many columns as there are values.
@@ -178,7 +200,8 @@ class AmcParser {
     const std::size_t index = FindBone(line);
     const AmcBone& bone = amc_.bones[index];
     if (seen_[index]) {
-      Fail(fmt::format("bone '{}' stands twice in frame {}", bone.name, amc_.frame_numbers.back()));
+      Fail(fmt::format("bone {} stands twice in frame {}", Quoted(bone.name),
+                       amc_.frame_numbers.back()));
     }
     line.remove_prefix(bone.name.size());
     double* const frame = amc_.values.data() + amc_.values.size() - amc_.column_count;
@@ -188,8 +211,8 @@ class AmcParser {
       if (count < bone.column_count) frame[bone.first_column + count] = value;
     }
     if (count != bone.column_count) {
-      Fail(fmt::format("bone '{}' has {} values; in the first frame it has {}", bone.name, count,
-                       bone.column_count));
+      Fail(fmt::format("bone {} has {} values; in the first frame it has {}", Quoted(bone.name),
+                       count, bone.column_count));
     }
     seen_[index] = true;
   }
@@ -219,7 +242,7 @@ class AmcParser {
     std::string_view rest = line;
     const std::string_view token = TakeToken(rest);
     CheckText(token);
-    Fail(fmt::format("a value of bone '{}' is not a number: {}", bone, Quoted(token)));
+    Fail(fmt::format("a value of bone {} is not a number: {}", Quoted(bone), Quoted(token)));
   }
 
   // At the next frame number: the frame before it must have every bone.
@@ -229,9 +252,9 @@ class AmcParser {
     }
     const auto missing = std::ranges::find(seen_, false);
     if (missing == seen_.end()) return;
+    const AmcBone& bone = amc_.bones[static_cast<std::size_t>(missing - seen_.begin())];
     throw Error(ErrorCode::kMalformedFile,
-                fmt::format("frame {} lacks bone '{}'", amc_.frame_numbers.back(),
-                            amc_.bones[static_cast<std::size_t>(missing - seen_.begin())].name),
+                fmt::format("frame {} lacks bone {}", amc_.frame_numbers.back(), Quoted(bone.name)),
                 {file_, frame_line_});
   }
 
@@ -242,24 +265,43 @@ class AmcParser {
     }
     const bool whole = !amc_.bones.empty() && std::ranges::find(seen_, false) == seen_.end();
     const std::int64_t number = amc_.frame_numbers.back();
-    if (whole && !last_line_is_cut_) return;
+    const bool last_value_may_be_cut = last_line_has_values_ && !lines_.line_is_terminated();
+    if (whole && !last_line_is_cut_ && !last_value_may_be_cut) return;
     if (!whole && in_first_frame()) {
       throw Error(ErrorCode::kMalformedFile,
                   fmt::format("has no whole frame: frame {} is cut off", number),
                   {file_, frame_line_});
     }
     if (options_.strict) {
-      throw Error(
-          ErrorCode::kMalformedFile,
-          fmt::format("the last frame, {}, is cut off (without --strict it is left out)", number),
-          {file_, frame_line_});
+      throw Error(ErrorCode::kMalformedFile,
+                  fmt::format("the last frame, {}, {}", number,
+                              whole ? "may be cut off: its last line has no end (without --strict "
+                                      "it is read)"
+                                    : "is cut off (without --strict it is left out)"),
+                  {file_, frame_line_});
     }
-    if (!whole) DropLastFrame();
-    amc_.diagnostics.push_back(
-        {Severity::kWarning,
-         whole ? "the file ends in the middle of a frame number; it may be cut off"
-               : fmt::format("the last frame, {}, is cut off; it is left out", number),
-         whole ? lines_.line_number() : frame_line_});
+    if (!whole) {
+      DropLastFrame();
+      Warn(fmt::format("the last frame, {}, is cut off; it is left out", number), frame_line_);
+    } else if (last_line_is_cut_) {
+      Warn("the last line is cut off; it is left out", lines_.line_number());
+    } else {
+      Warn("the last line has no end: if the file was cut off, its last value may lack digits",
+           lines_.line_number());
+    }
+  }
+
+  void Warn(std::string message, std::int64_t line) {
+    amc_.diagnostics.push_back({Severity::kWarning, std::move(message), line});
+  }
+
+  // Once, however many there are: a recording that keeps only every fourth frame jumps at each.
+  void ReportJumps() {
+    if (jumps_ == 0) return;
+    const std::string others = jumps_ == 1 ? "" : fmt::format(", and {} more", jumps_ - 1);
+    Warn(fmt::format("frame {} follows frame {}{}: numbers jump, time is taken to go on evenly",
+                     first_jump_.to, first_jump_.from, others),
+         first_jump_.line);
   }
 
   void DropLastFrame() {
@@ -278,7 +320,14 @@ class AmcParser {
   std::vector<bool> seen_;  // [bone] in the current frame.
   std::size_t bones_in_frame_ = 0;
   std::int64_t frame_line_ = 0;
+  std::int64_t jumps_ = 0;  // Of frame numbers.
+  struct {
+    std::int64_t from = 0;
+    std::int64_t to = 0;
+    std::int64_t line = 0;
+  } first_jump_;
   bool last_line_is_cut_ = false;
+  bool last_line_has_values_ = false;
 };
 
 bool SameValue(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }

@@ -81,7 +81,9 @@ class AsfParser {
     }
     saw_bonedata_ |= keyword == ":bonedata";
     section_ = known->second;
-    if (!Trim(rest).empty()) TakeLine(rest);
+    if (Trim(rest).empty()) return;
+    if (Trim(rest).starts_with(':')) Fail("two sections on one line: " + Quoted(line));
+    TakeLine(rest);
   }
 
   // A line inside a section, freed of its comment.
@@ -93,8 +95,9 @@ class AsfParser {
     }
     line = Trim(line);
     if (line.empty()) return;
-    if (section_ == nullptr)
+    if (section_ == nullptr) {
       Fail("expected ':' and a section such as ':version' or a '#' comment, found " + Quoted(line));
+    }
     (this->*section_)(line);
   }
 
@@ -177,7 +180,7 @@ class AsfParser {
       if (!bone_.id) Fail("'id' must be a whole number, found " + Quoted(Trim(rest)));
     } else if (keyword == "name") {
       bone_.name = std::string(Trim(rest));
-      if (bone_.name.find_first_of(" \t") != std::string::npos) {
+      if (SplitTokens(bone_.name).size() > 1) {
         Fail("a bone's name cannot have blanks: " + Quoted(bone_.name));
       }
     } else if (keyword == "direction") {
@@ -216,6 +219,7 @@ class AsfParser {
     AsfSkeleton::Family family;
     std::string_view rest = line;
     family.parent = std::string(TakeToken(rest));
+    if (EqualsIgnoringCase(family.parent, "root")) family.parent = "root";
     for (auto child = TakeToken(rest); !child.empty(); child = TakeToken(rest)) {
       family.children.emplace_back(child);
     }
@@ -273,6 +277,21 @@ class AsfParser {
     }
   }
 
+  // A bone of the hierarchy as ':bonedata' spells it, where they differ in case alone.
+  void AdoptSpelling() {
+    std::unordered_map<std::string, std::string> spelling;
+    for (const auto& bone : asf_.bones) spelling.try_emplace(ToLower(bone.name), bone.name);
+    const auto adopt = [&](std::string& name) {
+      if (name == "root" || bone_names_.contains(name)) return;
+      const auto found = spelling.find(ToLower(name));
+      if (found != spelling.end()) name = found->second;
+    };
+    for (auto& family : asf_.hierarchy) {
+      adopt(family.parent);
+      std::ranges::for_each(family.children, adopt);
+    }
+  }
+
   void CheckWhole() {
     if (!saw_bonedata_ || asf_.bones.empty()) {
       throw Error(
@@ -283,6 +302,7 @@ class AsfParser {
     if (asf_.hierarchy.empty()) {
       throw Error(ErrorCode::kMalformedFile, "no ':hierarchy' section", {file_});
     }
+    AdoptSpelling();
     CheckHierarchy();
     if (asf_.root_order.empty()) {
       asf_.root_order = {AsfDof::kTx, AsfDof::kTy, AsfDof::kTz,
@@ -299,19 +319,19 @@ class AsfParser {
     for (const auto& family : asf_.hierarchy) {
       const Place place{file_, family.line};
       if (!placed.contains(family.parent)) {
-        throw Error(
-            ErrorCode::kMalformedFile,
-            fmt::format("'{}' is used as a parent before it was named as a child", family.parent),
-            place);
+        throw Error(ErrorCode::kMalformedFile,
+                    fmt::format("{} is used as a parent before it was named as a child",
+                                Quoted(family.parent)),
+                    place);
       }
       for (const auto& child : family.children) {
         if (!bone_names_.contains(child)) {
           throw Error(ErrorCode::kMalformedFile,
-                      fmt::format("bone '{}' is not in ':bonedata'", child), place);
+                      fmt::format("bone {} is not in ':bonedata'", Quoted(child)), place);
         }
         if (!placed.insert(child).second) {
           throw Error(ErrorCode::kMalformedFile,
-                      fmt::format("bone '{}' has a second parent", child), place);
+                      fmt::format("bone {} has a second parent", Quoted(child)), place);
         }
       }
     }

@@ -50,6 +50,8 @@ void AppendBone(std::string& out, const AsfBone& bone) {
     for (const AsfDof dof : bone.dofs) out.append(" ").append(ToLower(ToString(dof)));
     out += '\n';
   }
+  // Before the limits, which any line that begins with a parenthesis would go on with.
+  AppendUnknown(out, "    ", bone.unknown);
   for (std::size_t i = 0; i < bone.limits.size(); ++i) {
     out += i == 0 ? "    limits (" : "           (";
     AppendShortestText(out, bone.limits[i].low);
@@ -57,7 +59,6 @@ void AppendBone(std::string& out, const AsfBone& bone) {
     AppendShortestText(out, bone.limits[i].high);
     out += ")\n";
   }
-  AppendUnknown(out, "    ", bone.unknown);
   out += "  end\n";
 }
 

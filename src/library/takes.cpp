@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
+#include <new>
 #include <optional>
 #include <set>
 #include <utility>
@@ -47,12 +47,14 @@ std::vector<fs::path> FilesBelow(const fs::path& folder, Wanted wanted) {
     std::error_code error;
     const fs::path real = fs::canonical(current, error);
     if (error || !entered.insert(real).second) continue;
-    for (const auto& entry : fs::directory_iterator(current, error)) {
+    // Not a range-based loop: its ++ throws where a folder cannot be read on.
+    for (fs::directory_iterator entry(current, error), end; !error && entry != end;
+         entry.increment(error)) {
       std::error_code ignored;
-      if (entry.is_directory(ignored)) {
-        open.push_back(entry.path());
-      } else if (entry.is_regular_file(ignored) && wanted(entry.path())) {
-        files.push_back(entry.path());
+      if (entry->is_directory(ignored)) {
+        open.push_back(entry->path());
+      } else if (entry->is_regular_file(ignored) && wanted(entry->path())) {
+        files.push_back(entry->path());
       }
     }
   }
@@ -86,9 +88,12 @@ class FileIndex {
 
 std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
   std::vector<fs::path> files;
+  std::error_code unreachable;  // A name that is too long, a link to itself: nothing is there.
   for (const fs::path& path : paths) {
-    if (!fs::exists(path)) throw Error(ErrorCode::kNotFound, "does not exist", {path});
-    if (fs::is_directory(path)) {
+    if (!fs::exists(path, unreachable)) {
+      throw Error(ErrorCode::kNotFound, "does not exist", {path});
+    }
+    if (fs::is_directory(path, unreachable)) {
       auto below =
           FilesBelow(path, [](const fs::path& file) { return FindMotionFormat(file) != nullptr; });
       if (below.empty()) {
@@ -115,7 +120,8 @@ std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
 
 TakeStretch ParseTakeStretch(const std::string& text) {
   const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || fs::exists(text)) return {.file = text};
+  std::error_code unreachable;
+  if (colon == std::string::npos || fs::exists(text, unreachable)) return {.file = text};
   const std::string_view range = std::string_view(text).substr(colon + 1);
   const std::size_t dash = range.find('-');
   const auto first = ParseInteger(range.substr(0, dash));
@@ -146,10 +152,16 @@ TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& feat
   LoadedMotion loaded = LoadMotion(stretch.file, options);
   const Motion motion = CutToStretch(loaded.motion, stretch);
   TakeFeatures take{.path = stretch.file,
+                    .stretch = stretch,
                     .name = std::move(loaded.name),
                     .rate_hz = motion.rate_hz,
                     .frame_count = motion.frame_count};
-  take.features = ExtractFeatures(StandardJoints(motion), features, rate_hz);
+  try {
+    take.features = ExtractFeatures(StandardJoints(motion), features, rate_hz);
+  } catch (const Error& error) {
+    if (!error.place().file.empty()) throw;
+    throw Error(error.code(), error.message(), {stretch.file});
+  }
   take.diagnostics = std::move(loaded.diagnostics);
   return take;
 }
@@ -159,18 +171,14 @@ TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const Fea
                                const ProgressCallback& progress) {
   std::vector<std::optional<TakeFeatures>> takes(stretches.size());
   std::vector<std::optional<Error>> errors(stretches.size());
-  std::mutex mutex;
-  std::size_t done = 0;
-  ParallelFor(stretches.size(), threads, [&](std::size_t i) {
+  ParallelFor(stretches.size(), threads, "reading", progress, [&](std::size_t i) {
     try {
       takes[i] = LoadTakeFeatures(stretches[i], features, rate_hz, options);
     } catch (const Error& error) {
       errors[i] = error;
-    }
-    const std::lock_guard lock(mutex);
-    ++done;
-    if (progress && !progress("reading", done, stretches.size())) {
-      throw Error(ErrorCode::kCancelled, "cancelled");
+    } catch (const std::bad_alloc&) {
+      errors[i] = Error(ErrorCode::kIoFailure, "needs more memory than there is",
+                        {.file = stretches[i].file});
     }
   });
   TakeBatch batch;
@@ -198,12 +206,14 @@ std::vector<TakeStretch> ClipsOfClass(const fs::path& list, const std::string& c
   const FileIndex index(places);
   std::vector<TakeStretch> clips;
   std::set<std::string> classes;
+  std::set<std::string> performers;  // Of the class.
   bool class_is_there = false;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
     classes.insert(row[class_column]);
     if (row[class_column] != class_name) continue;
     class_is_there = true;
+    if (actor_column) performers.insert(row[*actor_column]);
     if (!actors.empty() && std::ranges::find(actors, row[*actor_column]) == actors.end()) continue;
     const fs::path* file = index.Find(fs::path(row[file_column]).filename().string());
     if (file == nullptr) {
@@ -220,11 +230,12 @@ std::vector<TakeStretch> ClipsOfClass(const fs::path& list, const std::string& c
         fmt::format("has no class '{}'; there are: {}", class_name, fmt::join(classes, ", ")),
         {list});
   }
-  if (clips.empty()) {
-    throw Error(
-        ErrorCode::kNotFound,
-        fmt::format("class '{}' has no clip of actors {}", class_name, fmt::join(actors, ", ")),
-        {list});
+  for (const std::string& actor : actors) {
+    if (performers.contains(actor)) continue;
+    throw Error(ErrorCode::kNotFound,
+                fmt::format("class '{}' has no clip of actor '{}'; there are: {}", class_name,
+                            actor, fmt::join(performers, ", ")),
+                {list});
   }
   return clips;
 }

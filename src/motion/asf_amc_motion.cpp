@@ -4,21 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
-#include "kinebase/motion/kinematics.h"
+#include "kinebase/core/units.h"
 
 namespace kinebase {
 namespace {
 
-constexpr double kCentimetresPerInch = 2.54;
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr double kSmallestStatureCm = 120;
 constexpr double kLargestStatureCm = 220;
-constexpr double kWrittenLengthUnit = 0.45;  // What HDM05 and CMU have; every reader knows it.
 
 using BonesByName = std::map<std::string, const AsfBone*>;
 
@@ -33,9 +29,6 @@ std::vector<Dof> ToDofs(const std::vector<AsfDof>& dofs) {
   for (const AsfDof dof : dofs) result.push_back(static_cast<Dof>(dof));
   return result;
 }
-
-bool IsRotation(Dof dof) { return dof == Dof::kRx || dof == Dof::kRy || dof == Dof::kRz; }
-int AxisOf(Dof dof) { return static_cast<int>(dof) % 3; }  // Not for kLength.
 
 // Height of the figure in its neutral pose, in file units.
 double NeutralHeight(const AsfSkeleton& asf) {
@@ -182,6 +175,12 @@ std::vector<BoneColumns> MatchColumns(const AmcMotion& amc, const Skeleton& skel
                               skeleton.source().file_name),
                   {.line = bone.line});
     }
+    if (moved[static_cast<std::size_t>(*joint)]) {
+      throw Error(ErrorCode::kMismatch,
+                  fmt::format("bone '{}' stands for the same bone of the skeleton {} as one before",
+                              bone.name, skeleton.source().file_name),
+                  {.line = bone.line});
+    }
     moved[static_cast<std::size_t>(*joint)] = true;
     columns.push_back({*joint, bone.first_column, std::move(dofs)});
   }
@@ -198,30 +197,41 @@ std::vector<BoneColumns> MatchColumns(const AmcMotion& amc, const Skeleton& skel
   return columns;
 }
 
-// Values with the missing ones replaced by those of the frame before (or, at the start, by the
-// first that there is).
+// Values without gaps. A motion has a pose in every frame, so what is missing is taken from the
+// frame before; at the start of a take from the first frame that has it; a value that no frame has
+// is 0, the neutral pose. Each is said.
 std::vector<double> FillMissing(const AmcMotion& amc, Diagnostics& diagnostics) {
   std::vector<double> values = amc.values;
   std::size_t missing = 0;
-  for (std::size_t column = 0; column < amc.column_count; ++column) {
-    double last = 0;
-    for (std::size_t i = column; i < values.size(); i += amc.column_count) {
-      if (!std::isfinite(values[i])) continue;
-      last = values[i];
-      break;
-    }
-    for (std::size_t i = column; i < values.size(); i += amc.column_count) {
-      if (!std::isfinite(values[i])) {
-        values[i] = last;
-        ++missing;
+  std::string never_given;
+  for (const AmcBone& bone : amc.bones) {
+    bool is_given = true;
+    for (std::size_t c = bone.first_column; c < bone.first_column + bone.column_count; ++c) {
+      std::size_t known = c;
+      while (known < values.size() && !std::isfinite(values[known])) known += amc.column_count;
+      is_given = is_given && known < values.size();
+      double last = known < values.size() ? values[known] : 0;
+      for (std::size_t i = c; i < values.size(); i += amc.column_count) {
+        if (!std::isfinite(values[i])) {
+          values[i] = last;
+          ++missing;
+        }
+        last = values[i];
       }
-      last = values[i];
     }
+    if (!is_given) never_given += (never_given.empty() ? "" : ", ") + bone.name;
   }
   if (missing > 0) {
     diagnostics.push_back(
         {Severity::kWarning,
-         fmt::format("{} missing values are replaced by those of the frame before", missing)});
+         fmt::format("{} missing values are replaced by those of the frame before, at the start by "
+                     "the first that there are",
+                     missing)});
+  }
+  if (!never_given.empty()) {
+    diagnostics.push_back(
+        {Severity::kWarning,
+         "bones with a value that no frame has; it stays as in the neutral pose: " + never_given});
   }
   return values;
 }
@@ -268,55 +278,6 @@ void ApplyDofs(const DofValues& values, int joint, int frame, Motion& motion) {
 
 bool HasTranslation(const BoneColumns& bone) {
   return bone.joint != 0 && !std::ranges::all_of(bone.dofs, IsRotation);
-}
-
-// Values of an AMC line for a joint's DOFs, degrees and file units.
-std::vector<double> WriteDofs(const Motion& motion, int frame, int joint,
-                              const Eigen::Vector3d& angles_rad, double cm_per_unit) {
-  const Skeleton& skeleton = *motion.skeleton;
-  const Joint& bone = skeleton.joints()[static_cast<std::size_t>(joint)];
-  const auto dof_count = static_cast<Eigen::Index>(bone.dofs.size());
-  Eigen::VectorXd offsets = Eigen::VectorXd::Zero(dof_count);
-  if (joint == 0) {
-    const Eigen::Vector3d translation =
-        motion.root_position_cm[static_cast<std::size_t>(frame)] - skeleton.root_position_cm();
-    for (Eigen::Index i = 0; i < dof_count; ++i) {
-      if (!IsRotation(bone.dofs[i]) && bone.dofs[i] != Dof::kLength) {
-        offsets[i] = translation[AxisOf(bone.dofs[i])];
-      }
-    }
-  } else if (!motion.extra_offsets_cm.empty()) {
-    // extra offset = Σ dof · what one unit of it does; several DOFs may share the work.
-    const Eigen::Quaterniond into_bone =
-        motion.rotation(frame, joint).conjugate() * skeleton.axis(joint);
-    Eigen::MatrixXd effects = Eigen::MatrixXd::Zero(3, dof_count);
-    for (Eigen::Index i = 0; i < dof_count; ++i) {
-      if (bone.dofs[i] == Dof::kLength) {
-        effects.col(i) = bone.direction;
-      } else if (!IsRotation(bone.dofs[i])) {
-        effects.col(i) = into_bone * Eigen::Vector3d::Unit(AxisOf(bone.dofs[i]));
-      }
-    }
-    const auto row = static_cast<std::size_t>(frame) * skeleton.joints().size();
-    offsets = effects.completeOrthogonalDecomposition().solve(motion.extra_offsets_cm[row + joint]);
-  }
-  std::vector<double> values;
-  for (Eigen::Index i = 0; i < dof_count; ++i) {
-    values.push_back(IsRotation(bone.dofs[i]) ? angles_rad[AxisOf(bone.dofs[i])] / kRadiansPerDegree
-                                              : offsets[i] / cm_per_unit);
-  }
-  return values;
-}
-
-// The largest angle of `angles` that the joint's DOFs cannot hold.
-double LostAngle(const Joint& joint, const Eigen::Vector3d& angles_rad) {
-  double lost = 0;
-  for (const Dof dof : {Dof::kRx, Dof::kRy, Dof::kRz}) {
-    if (std::ranges::find(joint.dofs, dof) == joint.dofs.end()) {
-      lost = std::max(lost, std::abs(angles_rad[AxisOf(dof)]));
-    }
-  }
-  return lost;
 }
 
 }  // namespace
@@ -402,89 +363,6 @@ Motion BuildMotion(const AmcMotion& amc, const AsfSkeleton& asf,
     }
   }
   return motion;
-}
-
-AsfSkeleton ToAsf(const Skeleton& skeleton) {
-  const double cm_per_unit = kCentimetresPerInch / kWrittenLengthUnit;
-  const auto to_array = [](const Eigen::Vector3d& v) { return std::array{v.x(), v.y(), v.z()}; };
-  AsfSkeleton asf{.version = "1.10",
-                  .name = skeleton.source().name.empty() ? "KINEBASE" : skeleton.source().name,
-                  .mass_unit = skeleton.source().mass_unit.value_or(1),
-                  .length_unit = kWrittenLengthUnit,
-                  .documentation = skeleton.source().documentation};
-  const Joint& root = skeleton.joints().front();
-  for (const Dof dof : root.dofs) asf.root_order.push_back(static_cast<AsfDof>(dof));
-  asf.root_axis = ToString(root.euler_order);
-  asf.root_position = to_array(skeleton.root_position_cm() / cm_per_unit);
-  asf.root_orientation = to_array(skeleton.root_orientation_rad() / kRadiansPerDegree);
-  for (int i = 0; i < skeleton.joint_count(); ++i) {
-    const Joint& joint = skeleton.joints()[static_cast<std::size_t>(i)];
-    if (!skeleton.children(i).empty()) {
-      AsfSkeleton::Family family{.parent = joint.bone_name};
-      for (const int child : skeleton.children(i)) {
-        family.children.push_back(skeleton.joints()[static_cast<std::size_t>(child)].bone_name);
-      }
-      asf.hierarchy.push_back(std::move(family));
-    }
-    if (i == 0) continue;
-    AsfBone bone{.id = i,
-                 .name = joint.bone_name,
-                 .direction = to_array(joint.direction),
-                 .length = joint.length_cm / cm_per_unit,
-                 .axis = to_array(joint.axis_rad / kRadiansPerDegree),
-                 .axis_order = std::string(ToString(joint.euler_order))};
-    for (const Dof dof : joint.dofs) bone.dofs.push_back(static_cast<AsfDof>(dof));
-    for (std::size_t d = 0; d < joint.limits.size(); ++d) {
-      const double unit = IsRotation(joint.dofs[d]) ? kRadiansPerDegree : cm_per_unit;
-      bone.limits.push_back({joint.limits[d].low / unit, joint.limits[d].high / unit});
-    }
-    asf.bones.push_back(std::move(bone));
-  }
-  return asf;
-}
-
-AmcMotion ToAmc(const Motion& motion, Diagnostics& diagnostics) {
-  const Skeleton& skeleton = *motion.skeleton;
-  const double cm_per_unit = kCentimetresPerInch / kWrittenLengthUnit;
-  constexpr double kNoticeableAngle = 1e-6;  // rad; far below what any recording resolves.
-  AmcMotion amc{.header = {":FULLY-SPECIFIED", ":DEGREES"}, .angle_unit = AmcAngleUnit::kDegrees};
-  for (const int joint : skeleton.animated()) {
-    const Joint& bone = skeleton.joints()[static_cast<std::size_t>(joint)];
-    amc.bones.push_back({bone.bone_name, amc.column_count, bone.dofs.size()});
-    amc.column_count += bone.dofs.size();
-  }
-  for (int frame = 0; frame < motion.frame_count; ++frame) {
-    amc.frame_numbers.push_back(motion.first_frame + frame);
-  }
-  amc.values.resize(amc.column_count * amc.frame_count());
-  std::string lossy;
-  std::size_t next_bone = 0;
-  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-    const Joint& bone = skeleton.joints()[static_cast<std::size_t>(joint)];
-    const std::vector<Eigen::Vector3d> angles = EulerAngles(motion, joint);
-    double lost = 0;
-    for (int frame = 0; frame < motion.frame_count; ++frame) {
-      lost = std::max(lost, LostAngle(bone, angles[static_cast<std::size_t>(frame)]));
-      if (bone.dofs.empty()) continue;
-      const auto values =
-          WriteDofs(motion, frame, joint, angles[static_cast<std::size_t>(frame)], cm_per_unit);
-      std::ranges::copy(values, amc.values.begin() +
-                                    static_cast<std::ptrdiff_t>(frame * amc.column_count +
-                                                                amc.bones[next_bone].first_column));
-    }
-    if (!bone.dofs.empty()) ++next_bone;
-    if (lost > kNoticeableAngle) {
-      lossy += fmt::format("{}{} ({:.2f}°)", lossy.empty() ? "" : ", ", bone.bone_name,
-                           lost / kRadiansPerDegree);
-    }
-  }
-  if (!lossy.empty()) {
-    diagnostics.push_back({Severity::kWarning,
-                           "rotations that the bones' degrees of freedom cannot hold are left "
-                           "out: " +
-                               lossy});
-  }
-  return amc;
 }
 
 }  // namespace kinebase

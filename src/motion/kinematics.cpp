@@ -1,7 +1,9 @@
 #include "kinebase/motion/kinematics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "fmt/format.h"
@@ -11,6 +13,13 @@
 namespace kinebase {
 namespace {
 
+// `angles` with full turns added where that brings them nearer to `before`.
+Eigen::Vector3d Unwound(Eigen::Vector3d angles, const Eigen::Vector3d& before) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  for (int i = 0; i < 3; ++i) angles[i] -= kTurn * std::round((angles[i] - before[i]) / kTurn);
+  return angles;
+}
+
 // The triple that means the same rotation as `angles` and lies nearest to `before`: each angle may
 // gain full turns, and (a + π, π − b, c + π) is the same rotation as (a, b, c).
 Eigen::Vector3d NearestEquivalent(const Eigen::Vector3d& angles, const Eigen::Vector3d& before,
@@ -18,20 +27,53 @@ Eigen::Vector3d NearestEquivalent(const Eigen::Vector3d& angles, const Eigen::Ve
   constexpr double kPi = std::numbers::pi;
   Eigen::Vector3d flipped = angles + Eigen::Vector3d::Constant(kPi);
   flipped[middle] = kPi - angles[middle];
-  const auto unwind = [&](Eigen::Vector3d triple) {
-    for (int i = 0; i < 3; ++i) {
-      triple[i] -= 2 * kPi * std::round((triple[i] - before[i]) / (2 * kPi));
-    }
-    return triple;
-  };
-  const Eigen::Vector3d first = unwind(angles);
-  const Eigen::Vector3d second = unwind(flipped);
+  const Eigen::Vector3d first = Unwound(angles, before);
+  const Eigen::Vector3d second = Unwound(flipped, before);
   return (second - before).squaredNorm() < (first - before).squaredNorm() ? second : first;
 }
 
-int MiddleAxis(EulerOrder order) {
-  const char axis = ToString(order)[1];
-  return axis - 'X';
+int AxisAt(EulerOrder order, std::size_t place) { return ToString(order)[place] - 'X'; }
+
+// The angle about `axis` by which `r` turns the plane across it.
+double AngleAbout(int axis, const Eigen::Matrix3d& r) {
+  const int a = (axis + 1) % 3;
+  const int b = (axis + 2) % 3;
+  return std::atan2(r(b, a) - r(a, b), r(a, a) + r(b, b));
+}
+
+// The angles of a rotation that is one about `first` and then one about `second`, both fixed axes.
+// R = R₂·R₁: column `first` of R is that of R₂, row `second` of R is that of R₁. Unlike a general
+// triple they are unique and well-conditioned everywhere.
+Eigen::Vector3d TwoAngles(const Eigen::Matrix3d& r, int first, int second) {
+  const int third = 3 - first - second;
+  const double sign = (second - first + 3) % 3 == 1 ? 1 : -1;
+  Eigen::Vector3d angles = Eigen::Vector3d::Zero();
+  angles[second] = std::atan2(-sign * r(third, first), r(first, first));
+  angles[first] = std::atan2(-sign * r(second, third), r(second, second));
+  return angles;
+}
+
+// The angles with those about other axes than the joint's own at zero, where that gives `rotation`.
+std::optional<Eigen::Vector3d> AnglesOfDofs(const Eigen::Quaterniond& rotation,
+                                            const Joint& joint) {
+  constexpr double kSameRotation = 1e-7;  // rad; a bone of a metre then ends within 0.1 µm.
+  std::vector<int> axes;                  // In the Euler order.
+  for (std::size_t place = 0; place < 3; ++place) {
+    const int axis = AxisAt(joint.euler_order, place);
+    const auto dof = static_cast<Dof>(static_cast<int>(Dof::kRx) + axis);
+    if (std::ranges::find(joint.dofs, dof) != joint.dofs.end()) axes.push_back(axis);
+  }
+  if (axes.empty() || axes.size() == 3) return std::nullopt;
+  const Eigen::Matrix3d r = rotation.toRotationMatrix();
+  Eigen::Vector3d angles = Eigen::Vector3d::Zero();
+  if (axes.size() == 2) {
+    angles = TwoAngles(r, axes[0], axes[1]);
+  } else {
+    angles[axes[0]] = AngleAbout(axes[0], r);
+  }
+  const Eigen::Quaterniond again = EulerToQuaternion(angles, joint.euler_order);
+  if (again.angularDistance(rotation) > kSameRotation) return std::nullopt;
+  return angles;
 }
 
 }  // namespace
@@ -103,14 +145,19 @@ JointTrajectories StandardJoints(const Motion& motion) {
 }
 
 std::vector<Eigen::Vector3d> EulerAngles(const Motion& motion, int joint) {
-  const EulerOrder order = motion.skeleton->joints()[static_cast<std::size_t>(joint)].euler_order;
+  const Joint& bone = motion.skeleton->joints()[static_cast<std::size_t>(joint)];
+  const EulerOrder order = bone.euler_order;
   const Eigen::Quaterniond& axis = motion.skeleton->axis(joint);
   std::vector<Eigen::Vector3d> result;
   result.reserve(static_cast<std::size_t>(motion.frame_count));
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (int frame = 0; frame < motion.frame_count; ++frame) {
     const Eigen::Quaterniond own = axis.conjugate() * motion.rotation(frame, joint) * axis;
-    before = NearestEquivalent(QuaternionToEuler(own, order), before, MiddleAxis(order));
+    if (const auto angles = AnglesOfDofs(own, bone)) {
+      before = Unwound(*angles, before);
+    } else {
+      before = NearestEquivalent(QuaternionToEuler(own, order), before, AxisAt(order, 1));
+    }
     result.push_back(before);
   }
   return result;

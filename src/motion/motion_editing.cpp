@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -41,7 +42,13 @@ int SampleCount(int frames, double old_rate_hz, double new_rate_hz) {
   }
   if (frames == 0) return 0;
   // The same care as in PlaceOfSample: 120 / 30 · 40 must not become 159.99…
-  return static_cast<int>(std::floor((frames - 1) * new_rate_hz / old_rate_hz + 1e-9)) + 1;
+  const double samples = std::floor((frames - 1) * new_rate_hz / old_rate_hz + 1e-9) + 1;
+  if (!(samples <= std::numeric_limits<int>::max())) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("cannot resample {} frames from {} to {} Hz: too many frames", frames,
+                            old_rate_hz, new_rate_hz));
+  }
+  return static_cast<int>(samples);
 }
 
 // The name with left and right exchanged; empty if it names no side.

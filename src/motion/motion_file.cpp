@@ -1,8 +1,11 @@
 #include "kinebase/motion/motion_file.h"
 
+#include <algorithm>
 #include <array>
-#include <regex>
+#include <initializer_list>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
@@ -13,27 +16,66 @@ namespace {
 
 constexpr double kUsualRateHz = 120;
 
+// A word or a number of a comment, and what stands before it.
+struct CommentPart {
+  std::string_view gap;
+  std::string_view text;
+  bool is_number = false;
+};
+
+std::vector<CommentPart> SplitComment(std::string_view comment) {
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const std::size_t size = comment.size();
+  std::vector<CommentPart> parts;
+  for (std::size_t end = 0; end < size;) {
+    std::size_t begin = end;
+    while (begin < size && !is_digit(comment[begin]) && !is_letter(comment[begin])) ++begin;
+    if (begin == size) break;
+    const std::string_view gap = comment.substr(end, begin - end);
+    const bool is_number = is_digit(comment[begin]);
+    end = begin + 1;
+    while (end < size && (is_number ? is_digit(comment[end]) : is_letter(comment[end]))) ++end;
+    parts.push_back({gap, comment.substr(begin, end - begin), is_number});
+  }
+  return parts;
+}
+
+bool IsAnyOf(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::ranges::any_of(words,
+                             [&](std::string_view each) { return EqualsIgnoringCase(word, each); });
+}
+
 // A rate in a comment that some writers leave: "# 60 fps", "#rate: 120".
 double RateInComments(const std::vector<std::string>& header) {
-  static const std::regex kNumberThenUnit(R"(([0-9]+(\.[0-9]+)?)\s*(hz|fps)\b)", std::regex::icase);
-  static const std::regex kWordThenNumber(
-      R"(\b(frame ?rate|rate|fps|hz)\s*[:= ]\s*([0-9]+(\.[0-9]+)?))", std::regex::icase);
-  constexpr std::size_t kLongestComment = 200;  // std::regex recurses on its input.
   for (const auto& line : header) {
-    const std::string text = line.substr(0, kLongestComment);
-    std::smatch match;
-    if (!text.starts_with('#')) continue;
-    if (std::regex_search(text, match, kNumberThenUnit))
-      return ParseDouble(match[1].str()).value_or(0);
-    if (std::regex_search(text, match, kWordThenNumber))
-      return ParseDouble(match[2].str()).value_or(0);
+    if (!line.starts_with('#')) continue;
+    const std::vector<CommentPart> parts = SplitComment(line);
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      const CommentPart& before = parts[i - 1];
+      const CommentPart& part = parts[i];
+      const bool unit_follows =
+          before.is_number && Trim(part.gap).empty() && IsAnyOf(part.text, {"hz", "fps"});
+      const bool number_follows = part.is_number && IsAnyOf(Trim(part.gap), {"", ":", "="}) &&
+                                  IsAnyOf(before.text, {"rate", "framerate", "fps", "hz"});
+      if (!unit_follows && !number_follows) continue;
+      const double rate = ParseDouble(unit_follows ? before.text : part.text).value_or(0);
+      if (rate >= kSmallestRateHz && rate <= kLargestRateHz) return rate;
+    }
   }
   return 0;
 }
 
 double ChooseRate(const AmcMotion& amc, const TakeName& name, const LoadOptions& options,
                   Diagnostics& diagnostics) {
-  if (options.source_rate_hz > 0) return options.source_rate_hz;
+  if (options.source_rate_hz != 0) {
+    if (options.source_rate_hz >= kSmallestRateHz && options.source_rate_hz <= kLargestRateHz) {
+      return options.source_rate_hz;
+    }
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("a source rate of {:g} Hz; it must lie between {:g} and {:g} Hz",
+                            options.source_rate_hz, kSmallestRateHz, kLargestRateHz));
+  }
   if (const double rate = RateInComments(amc.header); rate > 0) return rate;
   if (name.rate_hz > 0) {
     if (name.class_name.empty() && name.take.find('-') == std::string::npos) {
@@ -92,8 +134,10 @@ void SaveAsfAmc(const Motion& motion, const std::filesystem::path& path, Overwri
   const std::filesystem::path skeleton = std::filesystem::path(path).replace_extension(".asf");
   CheckWritable(path, overwrite);
   CheckWritable(skeleton, overwrite);
-  WriteFile(skeleton, FormatAsf(ToAsf(*motion.skeleton)), overwrite);
-  WriteFile(path, FormatAmc(ToAmc(motion, diagnostics)), overwrite);
+  const std::string asf_text = FormatAsf(ToAsf(*motion.skeleton));
+  const std::string amc_text = FormatAmc(ToAmc(motion, diagnostics));
+  WriteFile(skeleton, asf_text, overwrite);
+  WriteFile(path, amc_text, overwrite);
 }
 
 constexpr std::array kFormats = {
@@ -129,7 +173,8 @@ const MotionFormat* FindMotionFormat(const std::filesystem::path& path) {
 }
 
 LoadedMotion LoadMotion(const std::filesystem::path& path, const LoadOptions& options) {
-  if (!std::filesystem::exists(path)) {
+  std::error_code ignored;  // A name that is too long, say: there is no such file either.
+  if (!std::filesystem::exists(path, ignored)) {
     throw Error(ErrorCode::kNotFound, "does not exist", {path});
   }
   const MotionFormat* format = FindMotionFormat(path);

@@ -56,24 +56,20 @@ Eigen::Quaterniond EulerToQuaternion(const Eigen::Vector3d& angles_rad, EulerOrd
          AboutAxis(first, angles_rad[first]);
 }
 
-// With the axes i, j, k of the order and R = R_k · R_j · R_i, row k of R holds the sine of the
-// middle angle in column i; the sign is that of the permutation (i, j, k).
+// With the axes i, j, k of the order and R = R_k · R_j · R_i, the last row of R in that order is
+// (∓sin j, ±cos j sin i, cos j cos i); the sign is that of the permutation (i, j, k). The other two
+// angles come from what is left of R without R_i: near gimbal lock i is uncertain, and only so do
+// they make up for it.
 Eigen::Vector3d QuaternionToEuler(const Eigen::Quaterniond& rotation, EulerOrder order) {
+  constexpr double kGimbalLock = 1e-14;  // Below, rounding alone decides i: zero is as good.
   const auto& [i, j, k] = kEulerAxes[static_cast<std::size_t>(order)];
   const double sign = (j - i + 3) % 3 == 1 ? 1 : -1;
   const Eigen::Matrix3d r = rotation.toRotationMatrix();
-  const double cosine = std::hypot(r(i, i), r(j, i));
-  Eigen::Vector3d angles;
-  angles[j] = std::atan2(-sign * r(k, i), cosine);
-  constexpr double kGimbalLock =
-      1e-9;  // Below, the outer angles turn about one axis: split is free.
-  if (cosine > kGimbalLock) {
-    angles[i] = std::atan2(sign * r(k, j), r(k, k));
-    angles[k] = std::atan2(sign * r(j, i), r(i, i));
-  } else {
-    angles[i] = 0;
-    angles[k] = std::atan2(-sign * r(i, j), r(j, j));
-  }
+  Eigen::Vector3d angles = Eigen::Vector3d::Zero();
+  if (std::hypot(r(k, j), r(k, k)) > kGimbalLock) angles[i] = std::atan2(sign * r(k, j), r(k, k));
+  const Eigen::Matrix3d rest = r * AboutAxis(i, -angles[i]).toRotationMatrix();
+  angles[j] = std::atan2(-sign * rest(k, i), std::abs(rest(k, k)));
+  angles[k] = std::atan2(-sign * rest(i, j), rest(j, j));
   return angles;
 }
 
@@ -114,10 +110,12 @@ Skeleton::Skeleton(std::vector<Joint> joints, SkeletonSource source,
 }
 
 std::optional<int> Skeleton::FindBone(std::string_view bone_name) const {
+  std::optional<int> found;
   for (int i = 0; i < joint_count(); ++i) {
-    if (EqualsIgnoringCase(joints_[i].bone_name, bone_name)) return i;
+    if (joints_[i].bone_name == bone_name) return i;
+    if (!found && EqualsIgnoringCase(joints_[i].bone_name, bone_name)) found = i;
   }
-  return std::nullopt;
+  return found;
 }
 
 Eigen::Quaterniond Skeleton::root_orientation() const {

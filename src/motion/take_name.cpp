@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kCmuRateHz = 120;
-constexpr double kLargestRateHz = 10000;
 constexpr int kFoldersUp = 3;
 
 std::vector<std::string> SplitAtUnderscores(const std::string& text) {
@@ -45,7 +44,7 @@ bool IsScene(std::string_view text) {
 
 double RateOf(const std::string& text) {
   const double rate = IsNumber(text) ? ParseDouble(text).value_or(0) : 0;
-  return rate <= kLargestRateHz ? rate : 0;
+  return rate >= kSmallestRateHz && rate <= kLargestRateHz ? rate : 0;
 }
 
 // "HDM_tr_a_b" → "HDM_tr_a_b", "HDM_tr_a", "HDM_tr", "HDM".
@@ -80,8 +79,8 @@ TakeName ParseTakeName(const fs::path& file) {
 
 fs::path FindSkeleton(const fs::path& motion_file) {
   const std::vector<std::string> stems = SkeletonStems(motion_file.stem().string());
-  fs::path folder = fs::absolute(motion_file).lexically_normal().parent_path();
   std::error_code ignored;
+  fs::path folder = fs::absolute(motion_file, ignored).lexically_normal().parent_path();
   for (int up = 0; up <= kFoldersUp; ++up) {
     for (const fs::path& place : {folder, folder / "asf", folder / "skeletons"}) {
       if (!fs::is_directory(place, ignored)) continue;

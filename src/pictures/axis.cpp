@@ -41,7 +41,7 @@ std::vector<Tick> RoundTicks(double last, double least_step, const TextStyle& st
   for (;; ++exponent) {
     for (const int mantissa : {1, 2, 5}) {
       if (mantissa * std::pow(10.0, exponent) < finest * (1 - 1e-9)) continue;
-      const std::vector<Tick> ticks = TicksEvery(mantissa, exponent, last, place);
+      std::vector<Tick> ticks = TicksEvery(mantissa, exponent, last, place);
       if (Fit(ticks, style)) return ticks;
     }
   }

@@ -52,7 +52,8 @@ PictureFormat PictureFormatOf(const std::filesystem::path& path) {
 std::string EncodePicture(PictureFormat format, PictureSize size,
                           const std::function<void(Canvas&)>& draw) {
   size = {std::ceil(size.width), std::ceil(size.height)};
-  if (!(size.width >= 1 && size.height >= 1) || !std::isfinite(size.width + size.height)) {
+  const bool possible = size.width >= 1 && size.height >= 1;  // False for NaN, too.
+  if (!possible || !std::isfinite(size.width + size.height)) {
     throw Error(ErrorCode::kInvalidArgument,
                 fmt::format("a picture cannot be {} × {} pixels", size.width, size.height));
   }

@@ -43,11 +43,14 @@ Eigen::Vector2d ToPixels(const Eigen::Vector3d& seen, double pixels_per_cm) {
   return {seen.x() * pixels_per_cm, -seen.y() * pixels_per_cm};
 }
 
-// Lines along `direction`, one `step` from the next, as many as can reach the box.
+// Lines along `direction`, one `step` from the next, as many as can reach the box; none where they
+// would lie so close that they fill it, as when one frame throws the figure kilometres away.
 void DrawLines(Canvas& canvas, const PicturePoint& origin, const Eigen::Vector2d& direction,
                const Eigen::Vector2d& step, const PictureBox& box) {
   const double distance =
       std::abs(direction.x() * step.y() - direction.y() * step.x()) / direction.norm();
+  constexpr double kLeastDistance = 2;  // Pixels.
+  if (!(distance >= kLeastDistance)) return;
   const int reach = static_cast<int>(std::hypot(box.width, box.height) / distance) + 1;
   for (int i = -reach; i <= reach; ++i) {
     const PicturePoint point = {origin.x + i * step.x(), origin.y + i * step.y()};

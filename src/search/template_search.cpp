@@ -1,8 +1,5 @@
 #include "kinebase/search/template_search.h"
 
-#include <atomic>
-#include <mutex>
-
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/parallel.h"
@@ -54,28 +51,6 @@ std::vector<Piece> CutIntoPieces(std::span<const FeatureMatrix> recordings) {
   return pieces;
 }
 
-// Tells the caller how far the search is, from one thread at a time.
-class Reporter {
- public:
-  Reporter(const ProgressCallback& progress, std::size_t total)
-      : progress_(progress), total_(total) {}
-
-  void PieceDone() {
-    if (!progress_) return;
-    const std::lock_guard lock(mutex_);
-    ++done_;
-    if (!progress_("searching", done_, total_)) {
-      throw Error(ErrorCode::kCancelled, "the search was cancelled");
-    }
-  }
-
- private:
-  const ProgressCallback& progress_;
-  std::size_t total_;
-  std::mutex mutex_;
-  std::size_t done_ = 0;
-};
-
 std::vector<Candidate> ScanPiece(const internal::ScanPlan& plan, const FeatureMatrix& recording,
                                  const Piece& piece, double tau) {
   std::vector<double> delta(piece.end - piece.begin);
@@ -99,11 +74,9 @@ std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
   const internal::ScanPlan plan(motion_template);
   const std::vector<Piece> pieces = CutIntoPieces(recordings);
   std::vector<std::vector<Candidate>> candidates(pieces.size());
-  Reporter reporter(options.progress, pieces.size());
-  ParallelFor(pieces.size(), options.threads, [&](std::size_t i) {
+  ParallelFor(pieces.size(), options.threads, "searching", options.progress, [&](std::size_t i) {
     const Piece& piece = pieces[i];
     candidates[i] = ScanPiece(plan, recordings[piece.recording], piece, options.tau);
-    reporter.PieceDone();
   });
 
   std::vector<Hit> hits;

@@ -93,12 +93,24 @@ std::array<BoneRow, 5> LegRows(const Proportions& p, double side) {
   const double cosine = std::cos(spread * std::numbers::pi / 180);
   return {{
       {"hipjoint", "root", {side * p.hip_half_width, -p.pelvis_height, 0}, {}, "", {}},
-      {"femur", "hipjoint", {sine * p.thigh, -cosine * p.thigh, 0}, {0, 0, spread}, "xyz",
+      {"femur",
+       "hipjoint",
+       {sine * p.thigh, -cosine * p.thigh, 0},
+       {0, 0, spread},
+       "xyz",
        {{{-160, 60}, {-80, 80}, {-80, 80}}}},
-      {"tibia", "femur", {sine * p.shank, -cosine * p.shank, 0}, {0, 0, spread}, "x",
+      {"tibia",
+       "femur",
+       {sine * p.shank, -cosine * p.shank, 0},
+       {0, 0, spread},
+       "x",
        {{{-10, 170}}}},
-      {"foot", "tibia", {sine * p.ankle_height, -cosine * p.ankle_height, p.instep},
-       {-90, 0, spread}, "xz", {{{-45, 90}, {-70, 70}}}},
+      {"foot",
+       "tibia",
+       {sine * p.ankle_height, -cosine * p.ankle_height, p.instep},
+       {-90, 0, spread},
+       "xz",
+       {{{-45, 90}, {-70, 70}}}},
       {"toes", "foot", {0, 0, p.toes}, {-90, 0, spread}, "x", {{{-90, 45}}}},
   }};
 }
@@ -108,16 +120,28 @@ std::array<BoneRow, 7> ArmRows(const Proportions& p, double side) {
   const Vector hand_axis = {0, 90 * side, 90 * side};
   const double thumb = p.hand * std::numbers::sqrt2 / 2;
   return {{
-      {"clavicle", "thorax", {side * p.shoulder_half_width, p.shoulder_rise, 0}, {}, "yz",
+      {"clavicle",
+       "thorax",
+       {side * p.shoulder_half_width, p.shoulder_rise, 0},
+       {},
+       "yz",
        {{{-40, 40}, {-50, 50}}}},
-      {"humerus", "clavicle", {side * p.upper_arm, 0, 0}, arm_axis, "xyz",
+      {"humerus",
+       "clavicle",
+       {side * p.upper_arm, 0, 0},
+       arm_axis,
+       "xyz",
        {{{-180, 180}, {-90, 90}, {-180, 180}}}},
       // Two bones, so that the second can turn about the forearm's axis.
       {"radius", "humerus", {side * p.forearm * 2 / 3, 0, 0}, arm_axis, "x", {{{-10, 170}}}},
       {"wrist", "radius", {side * p.forearm / 3, 0, 0}, hand_axis, "y", {{{-180, 180}}}},
       {"hand", "wrist", {side * p.hand, 0, 0}, hand_axis, "xz", {{{-90, 90}, {-45, 45}}}},
       {"fingers", "hand", {side * p.fingers, 0, 0}, hand_axis, "x", {{{-10, 90}}}},
-      {"thumb", "wrist", {side * thumb, 0, thumb}, {-90, 45 * side, 0}, "xz",
+      {"thumb",
+       "wrist",
+       {side * thumb, 0, thumb},
+       {-90, 45 * side, 0},
+       "xz",
        {{{-45, 45}, {-45, 45}}}},
   }};
 }
@@ -156,9 +180,9 @@ class AsfBuilder {
       bone.limits.push_back({row.limits[i][0], row.limits[i][1]});
     }
     const bool hangs_on_trunk = row.parent == "root" || row.parent == "thorax";
-    AddChild(hangs_on_trunk ? std::string(row.parent)
-                            : std::string(prefix) + std::string(row.parent),
-             bone.name);
+    AddChild(
+        hangs_on_trunk ? std::string(row.parent) : std::string(prefix) + std::string(row.parent),
+        bone.name);
     asf_.bones.push_back(std::move(bone));
   }
 
@@ -182,7 +206,8 @@ AsfSkeleton MakeAsf(const SyntheticActor& actor) {
   asf.name = "SYN_" + actor.name;
   asf.mass_unit = 1;
   asf.length_unit = kAsfLengthUnit;
-  asf.documentation = {"   A made-up skeleton by kinebase synth. It is synthetic: it belongs to nobody."};
+  asf.documentation = {
+      "   A made-up skeleton by kinebase synth. It is synthetic: it belongs to nobody."};
   asf.root_order = {AsfDof::kTx, AsfDof::kTy, AsfDof::kTz, AsfDof::kRx, AsfDof::kRy, AsfDof::kRz};
   const Proportions proportions = MakeProportions(actor);
   AsfBuilder builder(actor, asf);

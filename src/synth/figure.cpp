@@ -28,7 +28,9 @@ Matrix3d AboutZ(double rad) { return AngleAxisd(rad, Vector3d::UnitZ()).toRotati
 
 double SideSign(Side side) { return side == Side::kLeft ? 1 : -1; }
 
-Matrix3d Basis(const Vector3d& bone, const Vector3d& hinge) {
+// Orthonormal also where the two are perpendicular only to the digits of a file.
+Matrix3d Basis(const Vector3d& bone, const Vector3d& rough_hinge) {
+  const Vector3d hinge = (rough_hinge - rough_hinge.dot(bone) * bone).normalized();
   Matrix3d basis;
   basis << bone, hinge, hinge.cross(bone);
   return basis;
@@ -101,11 +103,18 @@ class Hinge {
 Figure::Figure(std::shared_ptr<const Skeleton> skeleton)
     : skeleton_(std::move(skeleton)),
       legs_{MakeLeg(Side::kLeft), MakeLeg(Side::kRight)},
-      arms_{MakeArm(Side::kLeft), MakeArm(Side::kRight)} {
+      arms_{MakeArm(Side::kLeft), MakeArm(Side::kRight)},
+      spine_(FindBones({"lowerback", "upperback", "thorax"})),
+      neck_(FindBones({"lowerneck", "upperneck", "head"})) {
   leg_length_cm_ = legs_[0].thigh_cm + legs_[0].shank_cm;
 }
 
 double Figure::hip_half_width() const { return legs_[0].hip_cm.x() / leg_length_cm_; }
+
+std::array<int, 3> Figure::FindBones(const std::array<const char*, 3>& names) const {
+  return {*skeleton_->FindBone(names[0]), *skeleton_->FindBone(names[1]),
+          *skeleton_->FindBone(names[2])};
+}
 
 Figure::Leg Figure::MakeLeg(Side side) const {
   const std::string prefix = side == Side::kLeft ? "l" : "r";
@@ -121,9 +130,8 @@ Figure::Leg Figure::MakeLeg(Side side) const {
   leg.shank_cm = joint(leg.tibia).length_cm;
   const Vector3d hinge = skeleton_->axis(leg.tibia) * Vector3d::UnitX();
   leg.femur_basis = Basis(joint(leg.femur).direction, hinge);
-  const Vector3d hanging_foot =
-      Basis(-Vector3d::UnitY(), Vector3d::UnitX()) * leg.femur_basis.transpose() *
-      joint(leg.foot).offset_cm;
+  const Vector3d hanging_foot = Basis(-Vector3d::UnitY(), Vector3d::UnitX()) *
+                                leg.femur_basis.transpose() * joint(leg.foot).offset_cm;
   leg.ankle_height_cm = -hanging_foot.y();
   leg.instep_cm = hanging_foot.z();
   return leg;
@@ -132,8 +140,12 @@ Figure::Leg Figure::MakeLeg(Side side) const {
 Figure::Arm Figure::MakeArm(Side side) const {
   const std::string prefix = side == Side::kLeft ? "l" : "r";
   const auto bone = [&](const char* name) { return *skeleton_->FindBone(prefix + name); };
-  Arm arm{.clavicle = bone("clavicle"), .humerus = bone("humerus"), .radius = bone("radius"),
-          .wrist = bone("wrist"), .hand = bone("hand"), .fingers = bone("fingers"),
+  Arm arm{.clavicle = bone("clavicle"),
+          .humerus = bone("humerus"),
+          .radius = bone("radius"),
+          .wrist = bone("wrist"),
+          .hand = bone("hand"),
+          .fingers = bone("fingers"),
           .humerus_basis = {}};
   arm.humerus_basis = Basis(skeleton_->joints()[arm.humerus].direction,
                             skeleton_->axis(arm.radius) * Vector3d::UnitX());
@@ -174,10 +186,10 @@ Figure::PelvisPlace Figure::PlacePelvis(const Pose& pose) const {
                     AboutZ(-pose[Body::kTilt] * kRadians);
   const Vector3d middle_of_hips = (legs_[0].hip_cm + legs_[1].hip_cm) / 2;
   const double unit = leg_length_cm_;
-  pelvis.root_cm = Vector3d(pose[Body::kSide] * unit,
-                            pose[Body::kHeight] * unit + legs_[0].ankle_height_cm,
-                            pose[Body::kForward] * unit) -
-                   pelvis.rotation * middle_of_hips;
+  pelvis.root_cm =
+      Vector3d(pose[Body::kSide] * unit, pose[Body::kHeight] * unit + legs_[0].ankle_height_cm,
+               pose[Body::kForward] * unit) -
+      pelvis.rotation * middle_of_hips;
   return pelvis;
 }
 
@@ -217,11 +229,10 @@ Figure::LegAngles Figure::StandingLeg(const Leg& leg, const FootPlace& foot, con
   const Vector3d hinge = pole.cross(along);
   const Vector3d bone = std::cos(hip_rad) * along + std::sin(hip_rad) * pole;
   const Matrix3d femur = Basis(bone, hinge) * leg.femur_basis.transpose();
-  angles.femur = Quaterniond(pelvis.transpose() * femur);
+  angles.femur = Quaterniond(pelvis.transpose() * femur).normalized();
   const Vector3d neutral_hinge = leg.femur_basis.col(1);
   const Matrix3d tibia = femur * AngleAxisd(angles.knee_rad, neutral_hinge).toRotationMatrix();
-  const Vector3d ankle =
-      hip + a * bone + tibia * skeleton_->joints()[leg.tibia].offset_cm;
+  const Vector3d ankle = hip + a * bone + tibia * skeleton_->joints()[leg.tibia].offset_cm;
   AimFoot(leg, foot, tibia, ankle, angles);
   return angles;
 }
@@ -233,8 +244,8 @@ void Figure::AimFoot(const Leg& leg, const FootPlace& foot, const Matrix3d& tibi
   const Vector3d from = axis.transpose() * skeleton_->joints()[leg.foot].direction;
   const Vector3d to = axis.transpose() * tibia.transpose() * (foot.ball_cm - ankle).normalized();
   angles.ankle_side_rad = std::atan2(to.x(), -to.y());
-  angles.ankle_rad = WrapAngle(std::atan2(to.z(), -std::hypot(to.x(), to.y())) -
-                               std::atan2(from.z(), from.y()));
+  angles.ankle_rad =
+      WrapAngle(std::atan2(to.z(), -std::hypot(to.x(), to.y())) - std::atan2(from.z(), from.y()));
 }
 
 // Feet do not go through the floor: the ankle gives way for the ball of the foot, and then the
@@ -272,26 +283,24 @@ Figure::LegAngles Figure::FreeLeg(const Pose& pose, Side side) const {
   const double sign = SideSign(side);
   const auto angle = [&](Limb channel) { return pose.at(channel, side) * kRadians; };
   const Matrix3d hanging = Basis(-Vector3d::UnitY(), Vector3d::UnitX());
-  const Matrix3d femur = AboutX(-angle(Limb::kHipFlexion)) *
-                         AboutZ(sign * angle(Limb::kHipAbduction)) *
-                         AboutY(sign * angle(Limb::kHipRotation)) * hanging *
-                         leg.femur_basis.transpose();
-  return {.femur = Quaterniond(femur), .knee_rad = angle(Limb::kKnee),
-          .ankle_rad = angle(Limb::kAnkle), .ankle_side_rad = 0, .toes_rad = 0};
+  const Matrix3d femur =
+      AboutX(-angle(Limb::kHipFlexion)) * AboutZ(sign * angle(Limb::kHipAbduction)) *
+      AboutY(sign * angle(Limb::kHipRotation)) * hanging * leg.femur_basis.transpose();
+  return {.femur = Quaterniond(femur),
+          .knee_rad = angle(Limb::kKnee),
+          .ankle_rad = angle(Limb::kAnkle),
+          .ankle_side_rad = 0,
+          .toes_rad = 0};
 }
 
 void Figure::PoseTrunk(const Pose& pose, Quaterniond* rotations) const {
-  const auto spread = [&](std::array<const char*, 3> bones, double x, double y, double z) {
-    const Vector3d share = Vector3d(x, y, z) * kRadians / 3;
-    for (const char* name : bones) {
-      const int joint = *skeleton_->FindBone(name);
-      rotations[joint] = JointRotation(joint, share);
+  const auto spread = [&](const std::array<int, 3>& joints, const Vector3d& degrees) {
+    for (const int joint : joints) {
+      rotations[joint] = JointRotation(joint, degrees * kRadians / 3);
     }
   };
-  spread({"lowerback", "upperback", "thorax"}, pose[Body::kBend], pose[Body::kTwist],
-         -pose[Body::kSideBend]);
-  spread({"lowerneck", "upperneck", "head"}, pose[Body::kNod], pose[Body::kHeadTurn],
-         -pose[Body::kHeadTilt]);
+  spread(spine_, {pose[Body::kBend], pose[Body::kTwist], -pose[Body::kSideBend]});
+  spread(neck_, {pose[Body::kNod], pose[Body::kHeadTurn], -pose[Body::kHeadTilt]});
 }
 
 void Figure::PoseArm(const Pose& pose, Side side, Quaterniond* rotations) const {
@@ -313,7 +322,8 @@ void Figure::PoseArm(const Pose& pose, Side side, Quaterniond* rotations) const 
   const Matrix3d in_chest = AngleAxisd(elevation, swing_axis).toRotationMatrix() *
                             AboutY(-sign * angle(Limb::kArmTwist)) * hanging *
                             arm.humerus_basis.transpose();
-  rotations[arm.humerus] = rotations[arm.clavicle].conjugate() * Quaterniond(in_chest);
+  rotations[arm.humerus] =
+      (rotations[arm.clavicle].conjugate() * Quaterniond(in_chest)).normalized();
   rotations[arm.radius] = JointRotation(arm.radius, {angle(Limb::kElbow), 0, 0});
   rotations[arm.wrist] = JointRotation(arm.wrist, {0, angle(Limb::kForearm), 0});
   rotations[arm.hand] = JointRotation(arm.hand, {angle(Limb::kWrist), 0, 0});
@@ -339,7 +349,7 @@ void Figure::SetPose(const Pose& pose, const FloorFrame& floor, double pelvis_dr
       angles.ankle_side_rad += share * (free.ankle_side_rad - angles.ankle_side_rad);
     }
     RespectFloor(leg, root, pelvis, share > 0, angles);
-    rotations[leg.femur] = angles.femur;
+    rotations[leg.femur] = angles.femur.normalized();
     rotations[leg.tibia] = JointRotation(leg.tibia, {angles.knee_rad, 0, 0});
     rotations[leg.foot] = JointRotation(leg.foot, {angles.ankle_rad, 0, angles.ankle_side_rad});
     rotations[leg.toes] = JointRotation(leg.toes, {angles.toes_rad, 0, 0});

@@ -62,6 +62,7 @@ class Figure {
     double knee_rad, ankle_rad, ankle_side_rad, toes_rad;
   };
 
+  [[nodiscard]] std::array<int, 3> FindBones(const std::array<const char*, 3>& names) const;
   [[nodiscard]] Leg MakeLeg(Side side) const;
   [[nodiscard]] Arm MakeArm(Side side) const;
   [[nodiscard]] Eigen::Quaterniond JointRotation(int joint, const Eigen::Vector3d& angles) const;
@@ -81,6 +82,8 @@ class Figure {
   std::shared_ptr<const Skeleton> skeleton_;
   std::array<Leg, 2> legs_;
   std::array<Arm, 2> arms_;
+  std::array<int, 3> spine_;
+  std::array<int, 3> neck_;
   double leg_length_cm_ = 0;
 };
 

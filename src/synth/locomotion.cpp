@@ -19,15 +19,15 @@ constexpr int kCoreSteps = 4;
 struct Gait {
   double step_s;
   double step_length;
-  double contact;          // How long a foot stays down.
-  double strike_ahead;     // Foot before the hips as it lands.
-  double heel_off;         // After landing.
+  double contact;       // How long a foot stays down.
+  double strike_ahead;  // Foot before the hips as it lands.
+  double heel_off;      // After landing.
   double strike_pitch;
   double push_off_pitch;
-  double swing_pitch;      // Soon after leaving the floor.
+  double swing_pitch;  // Soon after leaving the floor.
   double swing_lift;
-  double swing_lift_at;    // Fraction of the swing.
-  double sway;             // Pelvis towards the standing foot.
+  double swing_lift_at;  // Fraction of the swing.
+  double sway;           // Pelvis towards the standing foot.
   double lean;
   double pelvis_turn;
   double arm_forward, arm_back, elbow_forward, elbow_back;
@@ -35,17 +35,41 @@ struct Gait {
                                  // before the next.
 };
 
-constexpr Gait kWalk = {.step_s = 0.55, .step_length = 0.74, .contact = 1.2, .strike_ahead = 0.37,
-                        .heel_off = 0.70, .strike_pitch = -18, .push_off_pitch = 36,
-                        .swing_pitch = 44, .swing_lift = 0.055, .swing_lift_at = 0.40,
-                        .sway = 0.025, .lean = 1, .pelvis_turn = 5, .arm_forward = 24,
-                        .arm_back = -20, .elbow_forward = 32, .elbow_back = 14,
+constexpr Gait kWalk = {.step_s = 0.55,
+                        .step_length = 0.74,
+                        .contact = 1.2,
+                        .strike_ahead = 0.37,
+                        .heel_off = 0.70,
+                        .strike_pitch = -18,
+                        .push_off_pitch = 36,
+                        .swing_pitch = 44,
+                        .swing_lift = 0.055,
+                        .swing_lift_at = 0.40,
+                        .sway = 0.025,
+                        .lean = 1,
+                        .pelvis_turn = 5,
+                        .arm_forward = 24,
+                        .arm_back = -20,
+                        .elbow_forward = 32,
+                        .elbow_back = 14,
                         .height = {0.99, 0.995, 0.995, 0.99}};
-constexpr Gait kJog = {.step_s = 0.36, .step_length = 0.98, .contact = 0.72, .strike_ahead = 0.27,
-                       .heel_off = 0.34, .strike_pitch = -6, .push_off_pitch = 40,
-                       .swing_pitch = 78, .swing_lift = 0.30, .swing_lift_at = 0.38,
-                       .sway = 0.012, .lean = 9, .pelvis_turn = 7, .arm_forward = 34,
-                       .arm_back = -42, .elbow_forward = 98, .elbow_back = 82,
+constexpr Gait kJog = {.step_s = 0.36,
+                       .step_length = 0.98,
+                       .contact = 0.72,
+                       .strike_ahead = 0.27,
+                       .heel_off = 0.34,
+                       .strike_pitch = -6,
+                       .push_off_pitch = 40,
+                       .swing_pitch = 78,
+                       .swing_lift = 0.30,
+                       .swing_lift_at = 0.38,
+                       .sway = 0.012,
+                       .lean = 9,
+                       .pelvis_turn = 7,
+                       .arm_forward = 34,
+                       .arm_back = -42,
+                       .elbow_forward = 98,
+                       .elbow_back = 82,
                        .height = {0.965, 0.925, 0.975, 1.005}};
 
 // Steps alternate; step 0 is the left foot's, out of standing. Then four steps are the class, and
@@ -95,8 +119,9 @@ class GaitBuilder {
     if (step == 0) off_s = strike_s - 0.8 * step_s_;
     if (step == 1) off_s = StrikeTime(0) + (gait_.contact - 1) * step_s_;
     const double swing_s = strike_s - off_s;
-    timeline_.Set(off_s, kFootForward, side, rest + FootPlace(step - 2));
-    timeline_.Set(strike_s, kFootForward, side, rest + FootPlace(step));
+    // The foot is off the floor before it moves ahead, and there before it is down.
+    timeline_.Set(off_s + 0.06 * swing_s, kFootForward, side, rest + FootPlace(step - 2));
+    timeline_.Set(strike_s - 0.05 * swing_s, kFootForward, side, rest + FootPlace(step));
 
     const double share = step == 0 || step == kClosing ? 0.55 : 1;  // Of a whole step.
     timeline_.Set(off_s - (gait_.contact - gait_.heel_off) * step_s_, kFootPitch, side, 0);
@@ -109,8 +134,7 @@ class GaitBuilder {
     timeline_.Set(strike_s + 0.16 * step_s_, kFootPitch, side, 0);
 
     timeline_.Set(off_s, kFootLift, side, 0);
-    timeline_.Set(off_s + gait_.swing_lift_at * swing_s, kFootLift, side,
-                  share * gait_.swing_lift);
+    timeline_.Set(off_s + gait_.swing_lift_at * swing_s, kFootLift, side, share * gait_.swing_lift);
     timeline_.Set(off_s + 0.75 * swing_s, kFootLift, side, 0.2 * share * gait_.swing_lift + 0.01);
     timeline_.Set(strike_s, kFootLift, side, 0);
   }
@@ -123,7 +147,9 @@ class GaitBuilder {
     timeline_.Set(strike_s + 0.45 * step_s_, kSide, step == kClosing ? 0 : to_left);
     if (step == 0) timeline_.Set(strike_s - 0.55 * step_s_, kSide, -to_left - 0.02 * sign);
     if (step < kClosing) {
-      const double at_strike = step == 0 ? 0.5 * FootPlace(0) : FootPlace(step) - gait_.strike_ahead * step_length_ / gait_.step_length;
+      const double at_strike =
+          step == 0 ? 0.5 * FootPlace(0)
+                    : FootPlace(step) - gait_.strike_ahead * step_length_ / gait_.step_length;
       timeline_.Set(strike_s, kForward, at_strike);
       SetHeight(strike_s);
       SetArms(side, strike_s);
@@ -180,8 +206,7 @@ void SetFlight(Timeline& timeline, const Manner& manner, double off_s, double fl
   for (int i = 0; i <= kPieces; ++i) {
     const double u = static_cast<double>(i) / kPieces;
     const double t = u * flight_s;
-    const double rise =
-        0.5 * kGravity_cm_s2 * t * (flight_s - t) / manner.leg_length_cm;
+    const double rise = 0.5 * kGravity_cm_s2 * t * (flight_s - t) / manner.leg_length_cm;
     timeline.Set(off_s + t, kHeight, height_off + u * (height_down - height_off) + rise);
     timeline.SetBoth(off_s + t, kFootLift, rise);
   }
@@ -314,12 +339,12 @@ Timeline BuildTurnOnTheSpot(const Manner& manner, double angle_deg) {
     const double sign = side == Side::kLeft ? 1 : -1;
     const double off_s = (side == first ? 0.15 : 0.75) * manner.pace;
     const double down_s = off_s + 0.5 * manner.pace;
-    const auto goal = rotated(sign * manner.rest.at(kFootSide, side),
-                              manner.rest.at(kFootForward, side));
+    const auto goal =
+        rotated(sign * manner.rest.at(kFootSide, side), manner.rest.at(kFootForward, side));
     for (const Limb channel : {kFootSide, kFootForward, kFootTurn}) {
-      timeline.Set(off_s, channel, side, manner.rest.at(channel, side));
+      timeline.Set(off_s + 0.05 * manner.pace, channel, side, manner.rest.at(channel, side));
     }
-    for (const double moment_s : {down_s, end_s}) {
+    for (const double moment_s : {down_s - 0.05 * manner.pace, end_s}) {
       timeline.Set(moment_s, kFootSide, side, sign * goal[0]);
       timeline.Set(moment_s, kFootForward, side, goal[1]);
       timeline.Set(moment_s, kFootTurn, side, manner.rest.at(kFootTurn, side) + sign * angle_deg);

@@ -46,11 +46,8 @@ double Manner::Time(double usual_s) const {
 double Manner::Value(int channel, double usual) const {
   const double at_rest = rest.values[channel];
   if (std::isnan(usual)) return at_rest;
-  if (IsPlace(channel)) {
-    const bool is_blend = IsFootOrBlend(channel) && usual >= 0 &&
-                          (channel - kBodyCount) % kLimbCount == static_cast<int>(Limb::kFree);
-    return is_blend ? usual : at_rest + amplitude * (usual - at_rest);
-  }
+  if (IsBlend(channel)) return usual;
+  if (IsPlace(channel)) return at_rest + amplitude * (usual - at_rest);
   const double value = at_rest + angle_amplitudes[channel] * (usual - at_rest);
   // A joint that reaches far already does not go past where it ends.
   return std::abs(usual) <= 175 ? std::clamp(value, -175.0, 175.0) : value;

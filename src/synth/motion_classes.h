@@ -15,10 +15,10 @@ namespace kinebase::internal {
 
 // How one performer does one repetition of a class.
 struct Manner {
-  Pose rest;             // The performer's standing posture.
+  Pose rest;  // The performer's standing posture.
   double leg_length_cm;
-  double pace;           // Durations as multiples of the usual ones.
-  double amplitude;      // Of places: step length, depth of a squat.
+  double pace;                                         // Durations as multiples of the usual ones.
+  double amplitude;                                    // Of places: step length, depth of a squat.
   std::array<double, kChannelCount> angle_amplitudes;  // A channel's deviation from rest.
   double rhythm_shift_s;  // What the performer's sense of time adds, as a slow wave of this height
   double rhythm_phase;    // and this phase.

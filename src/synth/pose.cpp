@@ -9,16 +9,13 @@ Limb LimbOf(int channel) { return static_cast<Limb>((channel - kBodyCount) % kLi
 
 }  // namespace
 
-bool IsFootOrBlend(int channel) {
-  if (IsBody(channel)) return false;
-  const Limb limb = LimbOf(channel);
-  return limb >= Limb::kFootSide && limb <= Limb::kFree;
-}
-
 bool IsPlace(int channel) {
   if (IsBody(channel)) return channel <= ChannelOf(Body::kForward);
-  return IsFootOrBlend(channel) && LimbOf(channel) != Limb::kFootPitch;
+  const Limb limb = LimbOf(channel);
+  return limb == Limb::kFootSide || limb == Limb::kFootForward || limb == Limb::kFootLift;
 }
+
+bool IsBlend(int channel) { return !IsBody(channel) && LimbOf(channel) == Limb::kFree; }
 
 int MirroredChannel(int channel) {
   if (IsBody(channel)) return channel;

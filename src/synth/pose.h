@@ -80,9 +80,9 @@ struct Pose {
   [[nodiscard]] double& at(Limb channel, Side side) { return values[ChannelOf(channel, side)]; }
 };
 
-// Whether a channel is a place or the blend of a leg rather than an angle.
+// The rest are angles, but for kFree.
 [[nodiscard]] bool IsPlace(int channel);
-[[nodiscard]] bool IsFootOrBlend(int channel);
+[[nodiscard]] bool IsBlend(int channel);
 
 // The channel and sign that a channel has in the mirrored posture.
 [[nodiscard]] int MirroredChannel(int channel);

@@ -24,7 +24,8 @@ std::uint64_t HashText(std::string_view text) {
 }
 
 Random::Random(std::initializer_list<std::uint64_t> keys) : state_(0) {
-  for (const std::uint64_t key : keys) state_ = Mix(state_ + kGoldenGamma) ^ Mix(key + kGoldenGamma);
+  for (const std::uint64_t key : keys)
+    state_ = Mix(state_ + kGoldenGamma) ^ Mix(key + kGoldenGamma);
 }
 
 std::uint64_t Random::Next() {

@@ -119,7 +119,14 @@ class LibraryWriter {
   }
 
   void CheckFolder() const {
-    for (const char* entry : kEntries) CheckWritable(folder_ / entry, options_.overwrite);
+    if (options_.overwrite == Overwrite::kYes) return;
+    for (const char* entry : kEntries) {
+      std::error_code ignored;
+      if (!fs::exists(fs::symlink_status(folder_ / entry, ignored))) continue;
+      throw Error(ErrorCode::kAlreadyExists,
+                  "is there already; choose another folder, or ask for overwriting",
+                  {folder_ / entry});
+    }
   }
 
   void PlanItems() {
@@ -136,8 +143,8 @@ class LibraryWriter {
   void WriteItem(Item& item) {
     const SyntheticActor& actor = actors_[item.actor];
     if (item.is_take) {
-      SyntheticTake take = MakeSyntheticTake(actor, options_.clips_per_take, item.number,
-                                             options_.seed, classes_);
+      SyntheticTake take =
+          MakeSyntheticTake(actor, options_.clips_per_take, item.number, options_.seed, classes_);
       item.frames = take.motion.frame_count;
       item.segments = std::move(take.segments);
       WriteText(fs::path("takes") / (StemOf(item) + ".amc"), AmcText(take.motion, options_.seed));
@@ -194,14 +201,13 @@ class LibraryWriter {
   }
 
   [[nodiscard]] std::string CutFile() const {
-    std::string text =
-        fmt::format("% {}\n% take, first frame, last frame, clip\n",
-                    SeedNote("motion", options_.seed));
+    std::string text = fmt::format("% {}\n% take, first frame, last frame, clip\n",
+                                   SeedNote("motion", options_.seed));
     std::vector<int> numbers(classes_.size(), options_.actors * options_.repetitions);
     for (const Item& item : items_) {
       for (const SyntheticSegment& segment : item.segments) {
-        const auto c = static_cast<std::size_t>(
-            std::ranges::find(classes_, segment.class_name) - classes_.begin());
+        const auto c = static_cast<std::size_t>(std::ranges::find(classes_, segment.class_name) -
+                                                classes_.begin());
         text += fmt::format("\"takes\\{}.amc\"\t{}\t{}\t{}\n", StemOf(item), segment.first_frame,
                             segment.last_frame,
                             ClipStem(actors_[item.actor], segment.class_name, ++numbers[c]));
@@ -223,9 +229,9 @@ class LibraryWriter {
         "takes.cuts.txt   the same as an HDM05 cut file\n\nActors\n",
         options_.seed);
     for (const SyntheticActor& actor : actors_) {
-      text += fmt::format("  {}  {:.1f} cm, {}-handed, tempo {:.2f}, amplitude {:.2f}\n", actor.name,
-                          actor.stature_cm, actor.left_handed ? "left" : "right", actor.tempo,
-                          actor.amplitude);
+      text += fmt::format("  {}  {:.1f} cm, {}-handed, tempo {:.2f}, amplitude {:.2f}\n",
+                          actor.name, actor.stature_cm, actor.left_handed ? "left" : "right",
+                          actor.tempo, actor.amplitude);
     }
     text += "\nMotion classes\n";
     for (const std::string& name : classes_) text += "  " + name + "\n";

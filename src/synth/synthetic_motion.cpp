@@ -93,6 +93,7 @@ class Recorder {
   [[nodiscard]] Motion Develop() const {
     Motion motion{.skeleton = figure_.skeleton(), .rate_hz = kRateHz, .frame_count = frame_count()};
     std::vector<double> drops;
+    drops.reserve(poses_.size());
     for (const Pose& pose : poses_) drops.push_back(figure_.PelvisDrop(pose));
     drops = SmoothEnvelope(drops);
     const auto joints = static_cast<std::size_t>(motion.joint_count());
@@ -130,7 +131,8 @@ class TakeBuilder {
     Append(timeline);
     const auto frame_at = [&](double time_s) {
       return std::min(begin + static_cast<int>(std::lround(time_s * kRateHz)),
-                      recorder_.frame_count() - 1) + 1;
+                      recorder_.frame_count() - 1) +
+             1;
     };
     segments_.push_back({std::string(motion_class.name), frame_at(timeline.core_first_s),
                          frame_at(timeline.core_last_s)});
@@ -160,9 +162,7 @@ class TakeBuilder {
     frame_ = FrameAfter(frame_, timeline, performer_.figure().leg_length_cm());
   }
 
-  void Pause() {
-    Append(internal::BuildStand(NextManner("stand"), random_.Uniform(0.35, 1.2)));
-  }
+  void Pause() { Append(internal::BuildStand(NextManner("stand"), random_.Uniform(0.35, 1.2))); }
 
   void Turn() {
     const double angle_deg = random_.Uniform(25, 65) * (random_.Uniform(0, 1) < 0.5 ? -1 : 1);
@@ -187,8 +187,8 @@ std::vector<std::string> SyntheticClasses() {
   return names;
 }
 
-Motion MakeSyntheticClip(const std::string& class_name, const SyntheticActor& actor,
-                         int repetition, std::uint64_t seed) {
+Motion MakeSyntheticClip(const std::string& class_name, const SyntheticActor& actor, int repetition,
+                         std::uint64_t seed) {
   const MotionClass& motion_class = FindClass(class_name);
   const Performer performer(actor, seed);
   Random random = performer.Stream("clip " + class_name, static_cast<std::uint64_t>(repetition));

@@ -71,11 +71,10 @@ void Timeline::FinishOpen(double duration_s, bool open_begin, bool open_end) {
       continue;
     }
     const double rest = rest_.values[channel];
-    const bool is_angle = !IsPlace(channel);
     if (!open_begin) track.Set(0, rest);
     if (!open_end && track.last_time_s() < duration_s) {
       // After a full turn of an arm the way back to rest is not to turn it back.
-      const double turns = is_angle ? std::round((track.last_value() - rest) / 360) : 0;
+      const double turns = IsPlace(channel) ? 0 : std::round((track.last_value() - rest) / 360);
       track.Set(duration_s, rest + 360 * turns);
     }
     track.Finish();

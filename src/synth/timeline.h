@@ -42,7 +42,7 @@ class Timeline {
   double core_first_s = 0;
   double core_last_s = 0;
   // Where the performer's floor frame is at the end, seen from where it was.
-  double end_forward = 0;    // Leg lengths.
+  double end_forward = 0;   // Leg lengths.
   double end_turn_deg = 0;  // Applied after end_forward.
 
   void Set(double time_s, Body channel, double value);

@@ -1,9 +1,9 @@
 #include "templates/alignment.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
+
+#include "templates/distance_kernel.h"
 
 namespace kinebase::internal {
 namespace {
@@ -17,6 +17,7 @@ Alignment TraceBack(int reference_columns, int other_columns, const Cost& cost) 
   int other = other_columns - 1;
   Alignment alignment;
   alignment.cost = cost(reference, other);
+  alignment.path.reserve(static_cast<std::size_t>(reference_columns) + other_columns);
   alignment.path.push_back({reference, other});
   while (reference > 0 || other > 0) {
     const double diagonal =
@@ -42,7 +43,9 @@ Alignment TraceBack(int reference_columns, int other_columns, const Cost& cost) 
 FeatureRows::FeatureRows(const TemplateMatrix& matrix)
     : stride_((matrix.weights.size() + kBlock - 1) / kBlock * kBlock),
       values_(stride_ * matrix.feature_count),
-      constants_(matrix.feature_count) {
+      constants_(matrix.feature_count, std::numeric_limits<double>::quiet_NaN()),
+      weights_(matrix.weights) {
+  weights_.resize(stride_);
   for (int feature = 0; feature < matrix.feature_count; ++feature) {
     double* row = values_.data() + stride_ * feature;
     for (int c = 0; c < matrix.column_count(); ++c) row[c] = matrix.Column(c)[feature];
@@ -52,24 +55,19 @@ FeatureRows::FeatureRows(const TemplateMatrix& matrix)
 }
 
 void PairAlignment::FillLocalCosts(std::span<const double> column, double weight,
-                                   const TemplateMatrix& second, const FeatureRows& second_rows,
-                                   Profile profile, double* row) const {
-  constexpr std::size_t kBlock = FeatureRows::kBlock;
-  for (std::size_t block = 0; block < stride_; block += kBlock) {
-    // Sums in feature order, side by side: the order decides ties, ties decide the template.
-    std::array<double, kBlock> sums = {};
-    for (const int feature : features_) {
-      const double value = column[feature];
-      const double* other = second_rows.Row(feature) + block;
-      for (std::size_t i = 0; i < kBlock; ++i) sums[i] += std::abs(value - other[i]);
-    }
-    std::ranges::copy(sums, row + block);
+                                   const FeatureRows& second, Profile profile, double* row) {
+  // A feature that has this column's value everywhere in the other matrix adds +0 to every sum,
+  // which changes no bit.
+  features_.resize(column.size());
+  std::size_t count = 0;
+  for (int feature = 0; feature < std::ssize(column); ++feature) {
+    // Without a branch: which features differ is hard to predict.
+    features_[count] = feature;
+    count += second.Constant(feature) != column[feature] ? 1 : 0;
   }
+  SumDistances(column, std::span(features_).first(count), second.Row(0), stride_, row);
   if (profile == Profile::kPaper) return;
-  const double feature_count = second.feature_count;
-  for (std::size_t c = 0; c < second.weights.size(); ++c) {
-    row[c] = row[c] / feature_count * ((weight + second.weights[c]) / 2);
-  }
+  WeighDistances(static_cast<double>(column.size()), weight, second.weights(), stride_, row);
 }
 
 void PairAlignment::Compute(const TemplateMatrix& first, const TemplateMatrix& second,
@@ -79,19 +77,9 @@ void PairAlignment::Compute(const TemplateMatrix& first, const TemplateMatrix& s
   stride_ = second_rows.stride();
   costs_.resize(stride_ * first.weights.size());
   nearest_.resize(stride_);
-  // A feature that is the same everywhere in both adds +0 to every sum, which changes no bit.
-  features_.clear();
-  for (int feature = 0; feature < first.feature_count; ++feature) {
-    const std::optional<double> value = second_rows.Constant(feature);
-    bool differs = !value;
-    for (int c = 0; c < first_columns_ && !differs; ++c) {
-      differs = first.Column(c)[feature] != *value;
-    }
-    if (differs) features_.push_back(feature);
-  }
   for (int i = 0; i < first_columns_; ++i) {
     double* row = costs_.data() + stride_ * i;
-    FillLocalCosts(first.Column(i), first.weights[i], second, second_rows, profile, row);
+    FillLocalCosts(first.Column(i), first.weights[i], second_rows, profile, row);
     if (i == 0) {
       for (int j = 1; j < second_columns_; ++j) row[j] += row[j - 1];
       continue;

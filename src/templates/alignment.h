@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,19 +16,21 @@ namespace kinebase::internal {
 // with zeros so that whole blocks can be read.
 class FeatureRows {
  public:
-  static constexpr std::size_t kBlock = 8;  // Columns; a multiple of every vector length in use.
+  static constexpr std::size_t kBlock = 8;  // Columns.
 
   explicit FeatureRows(const TemplateMatrix& matrix);
 
   [[nodiscard]] std::size_t stride() const { return stride_; }
   [[nodiscard]] const double* Row(int feature) const { return values_.data() + stride_ * feature; }
-  // The value that a feature has in all columns, if it has only one.
-  [[nodiscard]] std::optional<double> Constant(int feature) const { return constants_[feature]; }
+  // The value that a feature has in all columns; NaN if they differ.
+  [[nodiscard]] double Constant(int feature) const { return constants_[feature]; }
+  [[nodiscard]] const double* weights() const { return weights_.data(); }  // [stride]
 
  private:
   std::size_t stride_;
   std::vector<double> values_;  // [feature × stride]
-  std::vector<std::optional<double>> constants_;
+  std::vector<double> constants_;
+  std::vector<double> weights_;
 };
 
 // Costs of the best alignments of all beginnings of two matrices.
@@ -47,14 +48,14 @@ class PairAlignment {
   [[nodiscard]] Alignment WithSecondAsReference() const;
 
  private:
-  void FillLocalCosts(std::span<const double> column, double weight, const TemplateMatrix& second,
-                      const FeatureRows& second_rows, Profile profile, double* row) const;
+  void FillLocalCosts(std::span<const double> column, double weight, const FeatureRows& second,
+                      Profile profile, double* row);
   [[nodiscard]] double At(int first, int second) const { return costs_[stride_ * first + second]; }
 
   int first_columns_ = 0;
   int second_columns_ = 0;
   std::size_t stride_ = 0;
-  std::vector<int> features_;    // Those that can differ.
+  std::vector<int> features_;    // Those that can differ from the column at hand.
   std::vector<double> costs_;    // [first column × stride] accumulated.
   std::vector<double> nearest_;  // [second column] lesser of the two predecessors in the row above.
 };

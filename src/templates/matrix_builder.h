@@ -23,7 +23,9 @@ class ColumnMean {
   // Values stay within 0 and 1: rounding is monotone, so no weighted sum exceeds the sum of weights
   // that is added up in the same order.
   void AppendTo(TemplateMatrix& matrix) const {
-    for (const double sum : sums_) matrix.values.push_back(sum / weight_);
+    const std::size_t first = matrix.values.size();
+    matrix.values.resize(first + sums_.size());
+    for (std::size_t i = 0; i < sums_.size(); ++i) matrix.values[first + i] = sums_[i] / weight_;
     matrix.weights.push_back(weight_);
   }
 

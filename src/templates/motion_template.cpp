@@ -43,6 +43,13 @@ MotionTemplate MirrorTemplate(const MotionTemplate& motion_template, const Featu
     double* to = mirrored.matrix.values.data() + from.size() * static_cast<std::size_t>(column);
     for (std::size_t row = 0; row < from.size(); ++row) to[row] = from[rows[row]];
   }
+  // Twice mirrored is the original again, by name too.
+  constexpr std::string_view kMark = " mirrored";
+  if (mirrored.name.ends_with(kMark)) {
+    mirrored.name.resize(mirrored.name.size() - kMark.size());
+  } else {
+    mirrored.name += kMark;
+  }
   return mirrored;
 }
 

@@ -25,6 +25,8 @@ constexpr int kVersion = 1;
 
 // A value for a message, not longer than a line can bear.
 std::string ShownValue(const json& value) {
+  // What is inside may be of any size and depth.
+  if (value.is_structured()) return value.is_array() ? "a list" : "an object";
   constexpr std::size_t kLongest = 40;
   std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";

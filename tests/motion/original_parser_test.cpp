@@ -60,7 +60,7 @@ TEST(OriginalParser, PutsAllJointsWhereWePutThem) {
     }
   });
   RecordProperty("largest_error_cm", ToShortestText(largest_cm));
-  EXPECT_LE(largest_cm, 1e-6);
+  EXPECT_LE(largest_cm, 1e-12);
 }
 
 TEST(OriginalParser, HasTheSameLocalRotations) {

@@ -63,8 +63,8 @@ TEST(EncodePicture, WritesWellFormedSvgWithTextAsText) {
   EXPECT_EQ(reader.Named("rect", "all").size(), 1u);
   EXPECT_EQ(reader.Named("polyline", "all").size(), 1u);
   EXPECT_EQ(reader.Named("circle", "all").size(), 1u);
-  EXPECT_EQ(reader.Named("svg").front().Number("width"), 200);
-  EXPECT_EQ(reader.Named("svg").front().Number("height"), 50);
+  EXPECT_EQ(reader.Named("svg").at(0).Number("width"), 200);
+  EXPECT_EQ(reader.Named("svg").at(0).Number("height"), 50);
 }
 
 TEST(EncodePicture, WritesPngAtTheStatedScale) {

@@ -147,9 +147,9 @@ class PoseStrip : public testing::Test {
 };
 
 void ExpectNothingOverlaps(const SvgReader& svg) {
-  const double width = svg.Named("svg").front().Number("width");
-  const double height = svg.Named("svg").front().Number("height");
-  double above = BoxOf(svg.Groups("legend").front()).bottom;
+  const double width = svg.Named("svg").at(0).Number("width");
+  const double height = svg.Named("svg").at(0).Number("height");
+  double above = BoxOf(svg.Groups("legend").at(0)).bottom;
   for (const std::vector<SvgElement>& row : svg.Groups("row")) {
     const Box box = BoxOf(row);
     EXPECT_GT(box.top, above);
@@ -211,7 +211,7 @@ TEST_F(PoseStrip, LeavesTimesOutWithoutARate) {
 
 TEST_F(PoseStrip, DrawsEveryBoneTheHeadAndEveryJoint) {
   const std::vector<SvgElement> slot =
-      Drawn({WalkingRow("pose", 1)}, {.view = PoseView::kFront}).Groups("slot").front();
+      Drawn({WalkingRow("pose", 1)}, {.view = PoseView::kFront}).Groups("slot").at(0);
   EXPECT_EQ(Bones(slot).size(), static_cast<std::size_t>(kBonesDrawn));
   // 23 dots (none at the headtop) and the head, which is the largest.
   EXPECT_EQ(std::ranges::count(slot, "circle", &SvgElement::name), 24);
@@ -220,12 +220,11 @@ TEST_F(PoseStrip, DrawsEveryBoneTheHeadAndEveryJoint) {
 TEST_F(PoseStrip, LeavesLimbsWithMissingJointsOut) {
   PoseStripRow row = WalkingRow("gaps", 1);
   At(row, 0, StandardJoint::kRelbow).x() = std::nan("");
-  const auto without_elbow = Drawn({row}).Groups("slot").front();
+  const auto without_elbow = Drawn({row}).Groups("slot").at(0);
   EXPECT_EQ(Bones(without_elbow).size(), kBonesDrawn - 2u);
   EXPECT_EQ(std::ranges::count(without_elbow, "circle", &SvgElement::name), 23);
   At(row, 0, StandardJoint::kHeadtop).z() = INFINITY;
-  EXPECT_EQ(std::ranges::count(Drawn({row}).Groups("slot").front(), "circle", &SvgElement::name),
-            22);
+  EXPECT_EQ(std::ranges::count(Drawn({row}).Groups("slot").at(0), "circle", &SvgElement::name), 22);
 }
 
 TEST_F(PoseStrip, DrawsRecordingsWithoutRootHipsOrAnyJoint) {
@@ -371,6 +370,14 @@ TEST_F(PoseStrip, ShortensLongTitles) {
               Contains(testing::AllOf(testing::StartsWith("www"), testing::EndsWith("…"))));
 }
 
+TEST_F(PoseStrip, SurvivesAFrameThatIsFarAway) {
+  for (const double height_cm : {1e7, 1e14}) {
+    PoseStripRow row = WalkingRow("glitch", 30);
+    At(row, 7, StandardJoint::kRoot).y() = height_cm;
+    EXPECT_FALSE(Drawn({row}).Texts().empty());
+  }
+}
+
 TEST_F(PoseStrip, LeavesTheFloorOutWhenAsked) {
   const std::vector<PoseStripRow> rows = {WalkingRow("pose", 30)};
   EXPECT_FALSE(Drawn(rows).Groups("floor").empty());
@@ -385,7 +392,7 @@ TEST_F(PoseStrip, IsTheSameBytesAgainAndTheSameSizeInBothFormats) {
     DrawPoseStrip(rows, File("b" + extension), Overwrite::kNo, options);
     EXPECT_EQ(test::ReadText(File("a" + extension)), test::ReadText(File("b" + extension)));
   }
-  const SvgElement svg = Drawn(rows, options).Named("svg").front();
+  const SvgElement svg = Drawn(rows, options).Named("svg").at(0);
   const test::PngReader png(File("a.png"));
   EXPECT_EQ(png.width(), kPngScale * svg.Number("width"));
   EXPECT_EQ(png.height(), kPngScale * svg.Number("height"));

@@ -94,7 +94,7 @@ class TemplatePicture : public testing::Test {
       colors.emplace_back();
       for (int column = 0; column < columns; ++column) {
         const double x = left + (column + 0.5) * (right - left) / columns;
-        colors.back().push_back(png.At(x, top + rows.front().Number("height") / 2));
+        colors.back().push_back(png.At(x, top + rows.at(0).Number("height") / 2));
       }
     }
     return colors;
@@ -191,7 +191,7 @@ TEST_F(TemplatePicture, PlacesTimesByTheWeights) {
     if (tick.text == "6.0") six = tick.Number("x");
   }
   const std::vector<SvgElement> cells = svg.Named("rect", "cells");
-  const double left = cells.front().Number("x");
+  const double left = cells.at(0).Number("x");
   const double width = cells.back().Number("x") + cells.back().Number("width") - left;
   EXPECT_NEAR(zero, left, 0.01);
   EXPECT_NEAR(two, left + width / 4, 0.01);
@@ -216,8 +216,8 @@ TextBox BoxOf(const SvgElement& text) {
 }
 
 void ExpectNothingCutOffOrCovered(const SvgReader& svg) {
-  const double width = svg.Named("svg").front().Number("width");
-  const double height = svg.Named("svg").front().Number("height");
+  const double width = svg.Named("svg").at(0).Number("width");
+  const double height = svg.Named("svg").at(0).Number("height");
   std::vector<TextBox> boxes;
   for (const SvgElement& text : svg.Named("text")) boxes.push_back(BoxOf(text));
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -260,9 +260,9 @@ TEST_F(TemplatePicture, ShortensWhatIsTooLong) {
   drawn.name = std::string(1000, 'x') + " end";
   const SvgReader svg = DrawnSvg(drawn, set);
   ExpectNothingCutOffOrCovered(svg);
-  const std::string title = svg.Texts().front();
+  const std::string title = svg.Texts().at(0);
   EXPECT_TRUE(title.starts_with("xxxx") && title.ends_with("…")) << title;
-  EXPECT_LT(svg.Named("svg").front().Number("width"), 1500);
+  EXPECT_LT(svg.Named("svg").at(0).Number("width"), 1500);
 }
 
 TEST_F(TemplatePicture, IsTheSamePictureInBothFormats) {
@@ -271,8 +271,8 @@ TEST_F(TemplatePicture, IsTheSamePictureInBothFormats) {
   const SvgReader svg = DrawnSvg(drawn, set);
   DrawTemplate(drawn, set, File("t.png"), Overwrite::kNo);
   const test::PngReader png(File("t.png"));
-  EXPECT_EQ(png.width(), kPngScale * svg.Named("svg").front().Number("width"));
-  EXPECT_EQ(png.height(), kPngScale * svg.Named("svg").front().Number("height"));
+  EXPECT_EQ(png.width(), kPngScale * svg.Named("svg").at(0).Number("width"));
+  EXPECT_EQ(png.height(), kPngScale * svg.Named("svg").at(0).Number("height"));
 }
 
 TEST_F(TemplatePicture, IsTheSameBytesAgain) {
@@ -365,7 +365,7 @@ TEST_F(TemplatePicture, DrawsLongRecordingsSeveralColumnsAtATime) {
   EXPECT_THAT(svg.Texts(), Contains(HasSubstr("4001 columns · 133.37 s")));
   EXPECT_THAT(svg.Texts(), Contains(HasSubstr("drawn 3 columns at a time")));
   const Color share = TemplateColor(2.0 / 3);
-  EXPECT_EQ(svg.Named("rect", "cells").front().attributes.at("fill"),
+  EXPECT_EQ(svg.Named("rect", "cells").at(0).attributes.at("fill"),
             fmt::format("#{:02x}{:02x}{:02x}", share.red, share.green, share.blue));
 }
 

@@ -13,8 +13,8 @@ double KneeBend(const JointTrajectories& t, int frame, bool left) {
               : BendDegrees(t, frame, kRhip, kRknee, kRankle);
 }
 
-// Which foot is ahead, each time that it changes: step after step.
-std::vector<bool> LeftFootAhead(const JointTrajectories& t) {
+// Which foot is ahead, each time that it changes: step after step, without the one before.
+std::vector<bool> StepsOfTheLeftFoot(const JointTrajectories& t) {
   std::vector<bool> sides;
   const Eigen::Vector3d way = Ahead(t, 0);
   for (int frame = 0; frame < t.frame_count(); ++frame) {
@@ -22,6 +22,8 @@ std::vector<bool> LeftFootAhead(const JointTrajectories& t) {
     if (std::abs(gap) < 15) continue;  // Feet are passing each other.
     if (sides.empty() || sides.back() != (gap > 0)) sides.push_back(gap > 0);
   }
+  // The left foot may still be ahead as the right one sets off.
+  if (!sides.empty() && sides.front()) sides.erase(sides.begin());
   return sides;
 }
 
@@ -131,20 +133,18 @@ TEST(ThrowOverarmR, BringsTheRightHandFromBehindTheShoulderToTheFrontFast) {
         return frame == 0 ? 0 : (t.at(frame, joint) - t.at(frame - 1, joint)).norm() * t.rate_hz;
       };
     };
-    const int release = FrameOfLargest(t, speed(kRfingers));
-    EXPECT_GT(speed(kRfingers)(release), 700);
+    EXPECT_GT(Largest(t, speed(kRfingers)), 700);
     EXPECT_GT(Largest(t, speed(kRfingers)), 1.3 * Largest(t, speed(kLfingers)));
-    double behind = 0;
-    for (int frame = 0; frame < release; ++frame) {
-      behind = std::min(behind, (t.at(frame, kRwrist) - t.at(frame, kRshoulder)).dot(way));
-    }
-    EXPECT_LT(behind, -10);
-    EXPECT_GT((t.at(release + 8, kRwrist) - t.at(release + 8, kRshoulder)).dot(way), 20);
-    EXPECT_GT(t.at(release - 6, kRwrist).y(), t.at(release - 6, kRshoulder).y());
+    const auto ahead = [&](int f) { return (t.at(f, kRwrist) - t.at(f, kRshoulder)).dot(way); };
+    EXPECT_LT(Smallest(t, ahead), -10);
+    EXPECT_GT(Largest(t, ahead), 35);
+    // It comes past the shoulder above it.
+    int passing = FrameOfLargest(t, [&](int f) { return -ahead(f); });
+    while (ahead(passing) < 0) ++passing;
+    EXPECT_GT(t.at(passing, kRwrist).y(), t.at(passing, kRshoulder).y() + 20);
     // The left foot steps ahead, as right-handers throw.
-    EXPECT_GT(Largest(t, [&](int f) {
-                return (t.at(f, kLankle) - t.at(f, kRankle)).dot(way);
-              }), 20);
+    EXPECT_GT(Largest(t, [&](int f) { return (t.at(f, kLankle) - t.at(f, kRankle)).dot(way); }),
+              20);
   });
 }
 
@@ -164,10 +164,11 @@ TEST(ClapAboveHead, BringsTheHandsTogetherAboveTheHead) {
              t.at(f, kRfingers).y() > t.at(f, kHeadtop).y();
     };
     EXPECT_TRUE(above(clap));
-    EXPECT_LT(Smallest(t, [&](int f) {
-                return above(f) ? Distance(t, f, kLfingers, kRfingers) : 1000.0;
-              }), 20);
-    EXPECT_GT(Distance(t, 0, kLfingers, kRfingers), 40);
+    EXPECT_LT(
+        Smallest(t,
+                 [&](int f) { return above(f) ? Distance(t, f, kLfingers, kRfingers) : 1000.0; }),
+        20);
+    EXPECT_GT(Distance(t, 0, kLfingers, kRfingers), 30);
   });
 }
 
@@ -185,8 +186,7 @@ TEST(PunchRFront, StretchesTheRightArmAheadAndNotTheLeft) {
   ForEachPerformance("punchRFront1Reps", [](const JointTrajectories& t) {
     const Eigen::Vector3d way =
         (t.at(0, kLtoes) - t.at(0, kLankle)).cwiseProduct(Eigen::Vector3d(1, 0, 1)).normalized();
-    const int out = FrameOfLargest(
-        t, [&](int f) { return Distance(t, f, kRshoulder, kRwrist); });
+    const int out = FrameOfLargest(t, [&](int f) { return Distance(t, f, kRshoulder, kRwrist); });
     EXPECT_LT(BendDegrees(t, out, kRshoulder, kRelbow, kRwrist), 25);
     EXPECT_GT((t.at(out, kRwrist) - t.at(out, kRshoulder)).dot(way), 35);
     for (int frame = 0; frame < t.frame_count(); ++frame) {
@@ -197,8 +197,7 @@ TEST(PunchRFront, StretchesTheRightArmAheadAndNotTheLeft) {
 
 TEST(Walk, MakesFourStepsTheRightFootFirst) {
   ForEachPerformance("walk4StepsRstart", [](const JointTrajectories& t) {
-    // It begins with the left foot ahead, as the right one sets off.
-    EXPECT_EQ(LeftFootAhead(t), std::vector<bool>({true, false, true, false, true}));
+    EXPECT_EQ(StepsOfTheLeftFoot(t), std::vector<bool>({false, true, false, true}));
     const Eigen::Vector3d way = t.at(t.frame_count() - 1, kRoot) - t.at(0, kRoot);
     EXPECT_GT(way.dot(Ahead(t, 0)), 150);
   });
@@ -227,10 +226,9 @@ TEST(Jog, MakesFourStepsTheRightFootFirstAndFliesInBetween) {
     const double speed = way.norm() / (t.frame_count() / t.rate_hz);
     EXPECT_GT(speed, 170);
     EXPECT_GT(way.normalized().dot(Ahead(t, 0)), 0.95);
-    EXPECT_GT(Largest(t, [&](int f) {
-                return std::min(t.at(f, kLtoes).y(), t.at(f, kRtoes).y());
-              }), 0.5);
-    EXPECT_EQ(LeftFootAhead(t), std::vector<bool>({true, false, true, false, true}));
+    EXPECT_GT(Largest(t, [&](int f) { return std::min(t.at(f, kLtoes).y(), t.at(f, kRtoes).y()); }),
+              0.5);
+    EXPECT_EQ(StepsOfTheLeftFoot(t), std::vector<bool>({false, true, false, true}));
   });
 }
 

@@ -17,7 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 SynthOptions SmallOptions() {
-  return {.actors = 2, .repetitions = 2, .takes = 1, .clips_per_take = 3, .seed = 5,
+  return {.actors = 2,
+          .repetitions = 2,
+          .takes = 1,
+          .clips_per_take = 3,
+          .seed = 5,
           .classes = {"squat1Reps", "kickRFront1Reps", "walk4StepsRstart"}};
 }
 
@@ -51,9 +55,9 @@ TEST(SyntheticLibrary, ReadsBackWithTheSameJoints) {
   for (int number = 0; number < options.actors; ++number) {
     const SyntheticActor actor = MakeSyntheticActor(number, options.seed);
     for (const std::string& name : SyntheticClasses()) {
-      const fs::path file = folder.path() / "cut_amc" / name /
-                            ("SYN_" + actor.name + "_" + name + "_00" +
-                             std::to_string(number + 1) + "_120.amc");
+      const fs::path file =
+          folder.path() / "cut_amc" / name /
+          ("SYN_" + actor.name + "_" + name + "_00" + std::to_string(number + 1) + "_120.amc");
       const LoadedMotion loaded = LoadMotion(file);
       EXPECT_EQ(loaded.name.actor, actor.name);
       EXPECT_EQ(loaded.name.class_name, name);

@@ -60,8 +60,7 @@ TEST(SyntheticTake, HasNoJumpsWhereOnePieceMeetsTheNext) {
     EXPECT_GT(ComputeBoundingBox(t).low_cm.y(), -0.05);
     for (int j = 0; j < t.joint_count; ++j) {
       for (int frame = 2; frame < t.frame_count(); ++frame) {
-        const Eigen::Vector3d change =
-            t.at(frame, j) - 2 * t.at(frame - 1, j) + t.at(frame - 2, j);
+        const Eigen::Vector3d change = t.at(frame, j) - 2 * t.at(frame - 1, j) + t.at(frame - 2, j);
         ASSERT_LT((t.at(frame, j) - t.at(frame - 1, j)).norm(), 16) << j << ' ' << frame;
         ASSERT_LT(change.norm(), 5) << j << ' ' << frame;
       }
@@ -72,8 +71,7 @@ TEST(SyntheticTake, HasNoJumpsWhereOnePieceMeetsTheNext) {
 TEST(SyntheticTake, StandsStillOrTurnsBetweenTheClips) {
   const SyntheticTake take = MakeTake(2);
   const JointTrajectories t = StandardJoints(take.motion);
-  for (std::size_t i = 0; i < take.segments.size(); ++i) {
-    const SyntheticSegment& segment = take.segments[i];
+  for (const SyntheticSegment& segment : take.segments) {
     // The segment holds the motion: what a squat's frames show is a squat.
     if (segment.class_name != "squat1Reps") continue;
     double lowest = 1000;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kinebase/core/error.h"
+#include "kinebase/search/subsequence_dtw.h"
 #include "support/files.h"
 #include "templates/matrices.h"
 
@@ -31,6 +32,27 @@ TEST(Learning, ReturnsASinglePerformanceAsItIs) {
     const LearnedMatrix learned = LearnTemplate(performances, {.profile = profile});
     EXPECT_EQ(learned.matrix, performances[0]);
     EXPECT_EQ(learned.largest_costs, std::vector<double>{0});
+  }
+}
+
+// Ties decide which way a path goes, so sums must not differ in their last bit.
+TEST(Learning, IsTheSameInEveryBitOnEveryInstructionSet) {
+  for (const Profile profile : kProfiles) {
+    Random random(11);
+    std::vector<TemplateMatrix> performances;
+    for (const int columns : {1, 7, 8, 9, 16, 17, 31}) {
+      performances.push_back(RandomPerformance(random, columns, 39));
+    }
+    std::vector<LearnedMatrix> learned;
+    for (const std::int64_t target : SupportedDeltaTargets()) {
+      UseDeltaTarget(target);
+      learned.push_back(LearnTemplate(performances, {.profile = profile}));
+    }
+    UseDeltaTarget(0);
+    for (const LearnedMatrix& other : learned) {
+      EXPECT_EQ(other.matrix, learned.front().matrix);
+      EXPECT_EQ(other.largest_costs, learned.front().largest_costs);
+    }
   }
 }
 
@@ -113,6 +135,17 @@ TEST(Learning, StopsInTheFirstRoundWithinTheCostLimit) {
   const LearnedMatrix learned = LearnTemplate(performances, {.cost_limit = limit});
   EXPECT_EQ(learned.largest_costs,
             std::vector<double>(costs.begin(), costs.begin() + static_cast<long>(expected)));
+}
+
+// Two performances that stay apart by the same amount, however often they are averaged.
+TEST(Learning, StopsWhenTheLargestCostNoLongerChanges) {
+  const std::vector<TemplateMatrix> performances = {
+      MakeMatrix({{1, 1}, {0, 0}, {1, 0}}),
+      MakeMatrix({{1, 1}, {1, 1}, {0, 1}, {0, 0}, {1, 0}, {0, 0}})};
+  const std::vector<double> costs = LearnTemplate(performances).largest_costs;
+  ASSERT_EQ(costs.size(), 2U);
+  EXPECT_NEAR(costs[0], 2.0 / 9, 1e-15);
+  EXPECT_EQ(costs[1], costs[0]);
 }
 
 TEST(Learning, StopsAfterTheRoundsThatAreAllowed) {

@@ -249,6 +249,14 @@ TEST(TemplateFile, RefusesNumbersThatNoDoubleHolds) {
   EXPECT_THAT(error.what(), HasSubstr("too large"));
 }
 
+TEST(TemplateFile, SurvivesDeepNesting) {
+  constexpr std::size_t kDepth = 300'000;
+  const std::string text =
+      "{\"format\": " + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
+  EXPECT_EQ(ErrorOf([&] { (void)ParseTemplate(text, "deep.json"); }).code(),
+            ErrorCode::kMalformedFile);
+}
+
 TEST(TemplateFile, RefusesEveryCutThatLosesSomething) {
   const std::string text = FormatTemplate(SampleTemplate());
   for (std::size_t length = 0; length + 2 < text.size(); ++length) {

@@ -16,7 +16,8 @@ enum class Overwrite { kNo, kYes };
 // Threads  May be called concurrently, also for the same path: one of the writers wins whole.
 void WriteFile(const std::filesystem::path& path, std::string_view contents, Overwrite overwrite);
 
-// Throws AlreadyExists if `path` is there and `overwrite` is kNo: asked before long work begins.
+// Throws AlreadyExists if `path` is there and `overwrite` is kNo, IoFailure if it is a folder or a
+// device: asked before long work begins.
 void CheckWritable(const std::filesystem::path& path, Overwrite overwrite);
 
 }  // namespace kinebase

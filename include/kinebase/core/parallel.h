@@ -3,6 +3,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <string_view>
+
+#include "kinebase/core/progress.h"
 
 namespace kinebase {
 
@@ -15,5 +18,10 @@ namespace kinebase {
 // Errors   If bodies throw, the exception of the smallest index that threw is thrown here, after
 //          the running ones ended; items not yet begun may be left out.
 void ParallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
+
+// The same with progress: `progress` hears after each item how many are done.
+// Errors   Also Cancelled, once `progress` has returned false.
+void ParallelFor(std::size_t count, int threads, std::string_view what,
+                 const ProgressCallback& progress, const std::function<void(std::size_t)>& body);
 
 }  // namespace kinebase

@@ -24,6 +24,7 @@ class LineScanner {
 
  private:
   std::string_view rest_;
+  const char* next_feed_ = nullptr;  // First LF in `rest_`, or its end; null: not yet looked for.
   std::string_view line_;
   std::int64_t line_number_ = 0;
   bool terminated_ = true;
@@ -45,7 +46,7 @@ void AppendShortestText(std::string& out, double value);
 [[nodiscard]] bool EqualsIgnoringCase(std::string_view a, std::string_view b);
 [[nodiscard]] std::string ToLower(std::string_view text);
 
-// `text` for an error message: shortened, unprintable bytes as \xNN.
+// `text` for an error message: shortened, valid UTF-8, unprintable bytes as \xNN.
 [[nodiscard]] std::string Quoted(std::string_view text);
 
 }  // namespace kinebase

@@ -14,12 +14,16 @@
 
 namespace kinebase {
 
+// Asked before long work: ExtractFeatures makes the same demand.
+// Errors  InvalidArgument unless `rate_hz` divides the set's rate.
+void CheckColumnRate(const FeatureSet& features, double rate_hz);
+
 // Features of a recording, computed at the set's rate and thinned to `rate_hz`.
 //
 // standard_joints  24 joints, at least one frame; another rate than the set's is resampled first.
-// rate_hz          A divisor of the set's rate; column c is the set's sample c · set rate /
-// rate_hz. Errors           InvalidArgument. Cost             O(frames · features); about 1 µs a
-// frame and core for 39 features.
+// rate_hz          A divisor of the set's rate: column c is the set's sample c · (set rate / rate).
+// Errors           InvalidArgument.
+// Cost             O(frames · features).
 [[nodiscard]] FeatureMatrix ExtractFeatures(const JointTrajectories& standard_joints,
                                             const FeatureSet& features, double rate_hz = 30);
 

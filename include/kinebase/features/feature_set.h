@@ -42,7 +42,7 @@ struct FeatureTerm {
   std::vector<StandardJoint> ignored_joints;  // kHeight only.
   double window_ms = 0;                       // Velocity smoothing; 0 = none.
   bool absolute = false;                      // Magnitude of the value.
-  double factor = 1;                          // 1 or −1.
+  double factor = 1;                          // Multiplies the value; −1 turns it round.
 };
 
 enum class TermCombination { kSum, kSmallest };

@@ -60,13 +60,14 @@ struct AmcMotion {
 };
 
 struct AmcReadOptions {
-  bool strict = false;  // Refuse what is otherwise repaired: a cut-off last frame.
+  bool strict = false;  // Refuse what may be cut off: part of a frame, a last line without end.
 };
 
 // Reads the text of an AMC file. `file` is for messages only.
 //
 // The first frame says which bones there are; later frames may order them differently. A last
-// frame that is cut off is dropped with a diagnostic.
+// frame that is cut off is dropped with a diagnostic. One that is complete but whose last line has
+// no end is kept, with a diagnostic: nothing tells whether its last value lost digits.
 // Errors  MalformedFile with the line: not text, no frames, a value that is no number, a bone
 //         missing from or twice in a frame, another number of values, a frame number that repeats.
 // Cost    Linear in the text; memory 8 bytes a value. No allocation depends on a number in the

@@ -39,6 +39,7 @@ struct TakeStretch {
 // A take that was read, with its features.
 struct TakeFeatures {
   std::filesystem::path path;
+  TakeStretch stretch;  // As it was asked for.
   TakeName name;
   double rate_hz = 0;  // Of the file.
   std::int64_t frame_count = 0;

@@ -33,7 +33,8 @@ void ForwardKinematics(const Motion& motion, int frame, Eigen::Vector3d* positio
                                                const JointTrajectories& all_joints);
 
 // Angles in rad about the joint's own x, y, z axes for every frame, in its Euler order: what an AMC
-// holds. Of the many triples that mean one rotation, the one nearest to the frame before is taken.
+// holds. Of the many triples that mean one rotation, one that the joint's DOFs can hold is taken,
+// and of these the one nearest to the frame before.
 [[nodiscard]] std::vector<Eigen::Vector3d> EulerAngles(const Motion& motion, int joint);
 
 struct BoundingBox {

@@ -13,6 +13,11 @@
 
 namespace kinebase {
 
+// Rates that a recording can have, Hz. Beyond them a number is a mistake, and resampling to the
+// rate of the features would multiply frames without bound.
+inline constexpr double kSmallestRateHz = 1;
+inline constexpr double kLargestRateHz = 10000;
+
 // Rotations are local: they turn a bone and all below it relative to its parent, and are the
 // identity in the neutral pose. World space is right-handed with Y up.
 struct Motion {
@@ -42,7 +47,7 @@ struct JointTrajectories {
   std::vector<Eigen::Vector3d> positions_cm;  // [frame × joint]; world space, Y up.
 
   [[nodiscard]] int frame_count() const {
-    return joint_count == 0 ? 0 : static_cast<int>(positions_cm.size()) / joint_count;
+    return joint_count == 0 ? 0 : static_cast<int>(positions_cm.size() / joint_count);
   }
   [[nodiscard]] const Eigen::Vector3d& at(int frame, int joint) const {
     return positions_cm[static_cast<std::size_t>(frame) * joint_count + joint];

@@ -18,6 +18,12 @@ namespace kinebase {
 
 enum class Dof { kTx, kTy, kTz, kRx, kRy, kRz, kLength };
 
+[[nodiscard]] constexpr bool IsRotation(Dof dof) {
+  return dof == Dof::kRx || dof == Dof::kRy || dof == Dof::kRz;
+}
+// 0 = x, 1 = y, 2 = z; not for kLength, which has none.
+[[nodiscard]] constexpr int AxisOf(Dof dof) { return static_cast<int>(dof) % 3; }
+
 // Euler order of a rotation by name: kXyz = about x first, then y, then z, each about the fixed
 // axes, so that the matrix is Rz · Ry · Rx.
 enum class EulerOrder { kXyz, kXzy, kYxz, kYzx, kZxy, kZyx };
@@ -92,7 +98,7 @@ class Skeleton {
     return name_map_;
   }
 
-  [[nodiscard]] std::optional<int> FindBone(std::string_view bone_name) const;  // Any case.
+  [[nodiscard]] std::optional<int> FindBone(std::string_view bone_name) const;  // Or another case.
   [[nodiscard]] const Eigen::Quaterniond& axis(int joint) const { return axes_[joint]; }
   [[nodiscard]] const SkeletonSource& source() const { return source_; }
   [[nodiscard]] const Eigen::Vector3d& root_position_cm() const { return root_position_cm_; }

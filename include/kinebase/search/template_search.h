@@ -13,8 +13,11 @@
 
 namespace kinebase {
 
+// The threshold for templates without one of their own: Müller & Röder, SCA 2006, Sect. 5.4.
+inline constexpr double kDefaultTau = 0.06;
+
 struct SearchOptions {
-  double tau = 0.06;
+  double tau = kDefaultTau;
   std::size_t most_hits = 500;
   int threads = 0;  // 0 = as many as the hardware has.
   ProgressCallback progress;

@@ -22,11 +22,11 @@ namespace kinebase {
 // A made-up person: size, proportions, tempo, amplitude, preferred side and noise follow from the
 // seed and the actor's number.
 struct SyntheticActor {
-  std::string name;       // "sa", "sb", …
+  std::string name;  // "sa", "sb", …
   double stature_cm = 0;
-  double tempo = 1;       // Times faster than usual.
-  double amplitude = 1;   // Times larger than usual.
-  double noise_deg = 0;   // Standard deviation of smooth joint angle noise.
+  double tempo = 1;      // Times faster than usual.
+  double amplitude = 1;  // Times larger than usual.
+  double noise_deg = 0;  // Standard deviation of smooth joint angle noise.
   bool left_handed = false;
 };
 
@@ -47,14 +47,15 @@ struct SyntheticActor {
 
 // A stretch of a long take and what it shows.
 struct SyntheticSegment {
-  std::string class_name;  // Empty: standing and transitions.
-  int first_frame = 0;     // 1-based, inclusive.
-  int last_frame = 0;
+  std::string class_name;
+  int first_frame = 0;  // 1-based.
+  int last_frame = 0;   // Inclusive.
 };
 
 struct SyntheticTake {
   Motion motion;
-  std::vector<SyntheticSegment> segments;  // In order, without overlap; clips only.
+  // In order, without overlap. What lies between them is standing, turning, getting ready.
+  std::vector<SyntheticSegment> segments;
 };
 
 // A take of `clips` clips with smooth transitions, standing and turns on the spot in between; a
@@ -67,8 +68,8 @@ struct SyntheticTake {
 
 struct SynthOptions {
   int actors = 4;
-  int repetitions = 3;       // Clips a class and actor.
-  int takes = 1;             // Long takes an actor.
+  int repetitions = 3;  // Clips a class and actor.
+  int takes = 1;        // Long takes an actor.
   int clips_per_take = 12;
   std::uint64_t seed = 1;
   std::vector<std::string> classes;  // Empty: all.
@@ -92,11 +93,11 @@ struct SynthReport {
 //   takes.truth.csv   file,class,first_frame,last_frame,split: what happens where in the long takes
 //   takes.cuts.txt    an HDM05 cut file for the same stretches
 //   README.txt  that says what this is
-// The column `split` says "synthetic" everywhere, and a clip is its own source take. Numbers nnn run
-// through a class over all actors; the cut file's go on after the clips'.
+// The column `split` says "synthetic" everywhere, and a clip is its own source take. Numbers nnn
+// run through a class over all actors; the cut file's go on after the clips'.
 //
-// Errors  AlreadyExists, before anything is written, if the folder holds any of these and overwriting
-//         was not asked for; overwriting leaves files alone that are not written again.
+// Errors  AlreadyExists, before anything is written, if the folder holds any of these and
+//         overwriting was not asked for; overwriting leaves files alone that are not written again.
 //         InvalidArgument, NotFound for options that make no sense; IoFailure; Cancelled.
 // Threads The files do not depend on how many there are.
 SynthReport WriteSyntheticLibrary(const std::filesystem::path& folder, const SynthOptions& options);

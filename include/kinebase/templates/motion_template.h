@@ -67,7 +67,7 @@ struct MotionTemplate {
   friend bool operator==(const MotionTemplate&, const MotionTemplate&) = default;
 };
 
-// The same motion done with the other side: rows exchanged.
+// The same motion done with the other side: rows exchanged, the name marked with " mirrored".
 // Errors  Mismatch if `features` is not the template's set.
 [[nodiscard]] MotionTemplate MirrorTemplate(const MotionTemplate& motion_template,
                                             const FeatureSet& features);

@@ -23,20 +23,29 @@
 #define KINEBASE_SCAN_KERNEL_ONCE
 namespace kinebase::internal {
 
-// Two rows of costs and starts, 16 bytes each a column, and 10 nibbles: about 22 KiB of the 32 KiB
+// Two rows of costs and starts, 16 bytes a column each, and 10 nibbles: about 22 KiB of the 32 KiB
 // that common processors have.
 inline constexpr std::size_t kTile = 512;
 inline constexpr std::size_t kNibblesOfAWord = 16;
-inline constexpr std::size_t kMargin = 8;  // Doubles before a tile's first column; 2 are used.
+inline constexpr std::size_t kMostLanes = 8;
+inline constexpr std::size_t kMargin = 2 * kMostLanes;
+
+// One number for each column of a tile, in stripes: with N lanes and stripes of S columns, vector v
+// holds columns v, S + v, 2S + v, … So the column before is the vector before, and neither
+// unaligned loads nor shuffles are needed. Two vectors in front of the first hold the columns
+// before each stripe.
+struct StripedNumbers {
+  alignas(64) double numbers[kMargin + kTile];
+
+  double* vectors() { return numbers + kMargin; }
+  const double* vectors() const { return numbers + kMargin; }
+};
 
 // A row of the cost table within a tile. Starts are doubles so that the mask of a cost comparison
 // selects them directly; every column number below 2^53 is exact.
 struct TileRow {
-  alignas(64) double costs[kMargin + kTile];
-  alignas(64) double starts[kMargin + kTile];
-
-  double* cost() { return costs + kMargin; }
-  double* start() { return starts + kMargin; }
+  StripedNumbers costs;
+  StripedNumbers starts;
 };
 
 // The two columns before a tile in one row.
@@ -48,6 +57,7 @@ struct LeftColumns {
 
 struct Workspace {
   TileRow rows[2];
+  alignas(64) std::uint64_t words[kTile];  // Striped, as all that follows.
   alignas(64) std::uint8_t nibbles[kNibblesOfAWord][kTile];
   alignas(64) std::uint8_t mismatches[kTile];
 };
@@ -63,18 +73,80 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Caps keep every length a divisor of the tile, however long a machine's vectors are.
 using BytesTag = hn::CappedTag<std::uint8_t, 64>;
-using DoublesTag = hn::CappedTag<double, 8>;
+using DoublesTag = hn::CappedTag<double, kMostLanes>;
 
-void SplitIntoNibbles(const ScanPlan& plan, const std::uint64_t* HWY_RESTRICT columns,
-                      std::size_t count, Workspace& work) {
-  for (const std::size_t nibble : plan.nibbles()) {
-    std::uint8_t* HWY_RESTRICT out = work.nibbles[nibble];
-    const unsigned shift = static_cast<unsigned>(4 * nibble);
-    for (std::size_t i = 0; i < count; ++i) {
-      out[i] = static_cast<std::uint8_t>((columns[i] >> shift) & 0xF);
+// How the columns of a tile lie in vectors.
+struct Stripes {
+  explicit Stripes(std::size_t columns)
+      : count(columns),
+        lanes(hn::Lanes(DoublesTag())),
+        length(std::max<std::size_t>((columns + lanes - 1) / lanes, 2)) {}
+
+  [[nodiscard]] std::size_t padded_count() const { return lanes * length; }
+
+  std::size_t count;  // Columns of the tile.
+  std::size_t lanes;
+  std::size_t
+      length;  // Vectors; at least 2, so that both columns before a stripe are in one other.
+};
+
+void StripeWords(const std::uint64_t* HWY_RESTRICT columns, const Stripes& stripes,
+                 Workspace& work) {
+  for (std::size_t lane = 0; lane < stripes.lanes; ++lane) {
+    const std::size_t first = std::min(stripes.count, lane * stripes.length);
+    const std::size_t count = std::min(stripes.count - first, stripes.length);
+    for (std::size_t v = 0; v < count; ++v) {
+      work.words[v * stripes.lanes + lane] = columns[first + v];
     }
   }
 }
+
+#if HWY_TARGET == HWY_SCALAR
+void SplitIntoNibbles(std::size_t count, Workspace& work) {
+  for (std::size_t nibble = 0; nibble < kNibblesOfAWord; ++nibble) {
+    for (std::size_t i = 0; i < count; ++i) {
+      work.nibbles[nibble][i] = static_cast<std::uint8_t>((work.words[i] >> (4 * nibble)) & 0xF);
+    }
+  }
+}
+#else
+// Eight words at a time are transposed by bytes in three rounds of interleaving; each byte is then
+// cut in two.
+void SplitIntoNibbles(std::size_t count, Workspace& work) {
+  const hn::Full128<std::uint8_t> bytes;
+  const hn::Full128<std::uint16_t> pairs;
+  const hn::Full64<std::uint8_t> half;
+  const auto low_nibbles = hn::Set(bytes, std::uint8_t{0xF});
+  for (std::size_t i = 0; i < count; i += 8) {
+    const auto load = [&](std::size_t word) {
+      return hn::BitCast(bytes, hn::Load(hn::Full128<std::uint64_t>(), work.words + i + word));
+    };
+    const auto words01 = load(0), words23 = load(2), words45 = load(4), words67 = load(6);
+    const auto words04 = hn::InterleaveLower(bytes, words01, words45);
+    const auto words15 = hn::InterleaveUpper(bytes, words01, words45);
+    const auto words26 = hn::InterleaveLower(bytes, words23, words67);
+    const auto words37 = hn::InterleaveUpper(bytes, words23, words67);
+    const auto even_low = hn::InterleaveLower(bytes, words04, words26);
+    const auto even_high = hn::InterleaveUpper(bytes, words04, words26);
+    const auto odd_low = hn::InterleaveLower(bytes, words15, words37);
+    const auto odd_high = hn::InterleaveUpper(bytes, words15, words37);
+    // Bytes 2p and 2p + 1 of all eight words.
+    const auto store = [&](std::size_t p, hn::Vec<hn::Full128<std::uint8_t> > two_bytes) {
+      const auto low = hn::And(two_bytes, low_nibbles);
+      const auto shifted = hn::ShiftRight<4>(hn::BitCast(pairs, two_bytes));
+      const auto high = hn::And(hn::BitCast(bytes, shifted), low_nibbles);
+      hn::Store(hn::LowerHalf(half, low), half, work.nibbles[4 * p] + i);
+      hn::Store(hn::LowerHalf(half, high), half, work.nibbles[4 * p + 1] + i);
+      hn::Store(hn::UpperHalf(half, low), half, work.nibbles[4 * p + 2] + i);
+      hn::Store(hn::UpperHalf(half, high), half, work.nibbles[4 * p + 3] + i);
+    };
+    store(0, hn::InterleaveLower(bytes, even_low, odd_low));
+    store(1, hn::InterleaveUpper(bytes, even_low, odd_low));
+    store(2, hn::InterleaveLower(bytes, even_high, odd_high));
+    store(3, hn::InterleaveUpper(bytes, even_high, odd_high));
+  }
+}
+#endif  // HWY_TARGET == HWY_SCALAR
 
 #if HWY_TARGET == HWY_SCALAR
 // A vector of one byte cannot look anything up in sixteen.
@@ -114,7 +186,7 @@ void CountMismatches(const ScanRow& row, std::size_t count, Workspace& work) {
 }
 #endif  // HWY_TARGET == HWY_SCALAR
 
-// Local costs of a vector of columns from column i on.
+// Local costs of the vector that begins at number i.
 HWY_INLINE hn::Vec<DoublesTag> LocalCosts(const Workspace& work, std::size_t i,
                                           hn::Vec<DoublesTag> scale) {
   const DoublesTag tag;
@@ -125,100 +197,118 @@ HWY_INLINE hn::Vec<DoublesTag> LocalCosts(const Workspace& work, std::size_t i,
 }
 
 // Every column is a start.
-void FillFirstRow(const ScanRow& row, std::size_t first_column, std::size_t count, TileRow& out,
-                  const Workspace& work) {
+void FillFirstRow(const ScanRow& scan_row, std::size_t first_column, const Stripes& stripes,
+                  const Workspace& work, TileRow& row) {
   const DoublesTag tag;
-  const std::size_t lanes = hn::Lanes(tag);
-  const auto scale = hn::Set(tag, row.scale);
-  for (std::size_t i = 0; i < count; i += lanes) {
-    hn::Store(LocalCosts(work, i, scale), tag, out.cost() + i);
-    hn::Store(hn::Iota(tag, static_cast<double>(first_column + i)), tag, out.start() + i);
+  const auto scale = hn::Set(tag, scan_row.scale);
+  const auto stripe_starts =
+      hn::Mul(hn::Iota(tag, 0.0), hn::Set(tag, static_cast<double>(stripes.length)));
+  for (std::size_t v = 0; v < stripes.length; ++v) {
+    const std::size_t i = v * stripes.lanes;
+    const auto column = hn::Set(tag, static_cast<double>(first_column + v));
+    hn::Store(LocalCosts(work, i, scale), tag, row.costs.vectors() + i);
+    hn::Store(hn::Add(column, stripe_starts), tag, row.starts.vectors() + i);
   }
 }
 
-void FillUnreachable(std::size_t count, TileRow& out) {
-  std::fill_n(out.costs, kMargin + count, std::numeric_limits<double>::infinity());
-  std::fill_n(out.starts, kMargin + count, -1.0);
+void FillUnreachable(TileRow& row) {
+  std::ranges::fill(row.costs.numbers, std::numeric_limits<double>::infinity());
+  std::ranges::fill(row.starts.numbers, -1.0);
 }
 
-// `row` holds row k−2 and becomes row k. From right to left: a cell needs columns to its left only,
-// so nothing is overwritten that is still needed.
+// `row` holds row k−2 and becomes row k. What the next vector needs of the old row is read before
+// it is overwritten.
 template <bool kDoublesTwoOne>
-void FillRow(const ScanRow& scan_row, std::size_t count, TileRow& one_up, TileRow& row,
-             const Workspace& work) {
+void FillRow(const ScanRow& scan_row, const Stripes& stripes, const Workspace& work,
+             const TileRow& one_up, TileRow& row) {
   const DoublesTag tag;
-  const std::size_t lanes = hn::Lanes(tag);
+  const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(stripes.lanes);
+  const std::ptrdiff_t end = static_cast<std::ptrdiff_t>(stripes.padded_count());
   const auto scale = hn::Set(tag, scan_row.scale);
-  const double* HWY_RESTRICT up_cost = one_up.cost();
-  const double* HWY_RESTRICT up_start = one_up.start();
-  double* HWY_RESTRICT cost = row.cost();
-  double* HWY_RESTRICT start = row.start();
-  for (std::size_t i = (count + lanes - 1) / lanes * lanes; i > 0;) {
-    i -= lanes;
-    const auto one_one = hn::LoadU(tag, up_cost + i - 1);
-    const auto one_two = hn::LoadU(tag, up_cost + i - 2);
-    const auto two_one = hn::LoadU(tag, cost + i - 1);
+  const double* HWY_RESTRICT up_costs = one_up.costs.vectors();
+  const double* HWY_RESTRICT up_starts = one_up.starts.vectors();
+  double* HWY_RESTRICT costs = row.costs.vectors();
+  double* HWY_RESTRICT starts = row.starts.vectors();
+  auto one_one = hn::Load(tag, up_costs - lanes);
+  auto one_two = hn::Load(tag, up_costs - 2 * lanes);
+  auto two_one = hn::Load(tag, costs - lanes);
+  auto one_one_start = hn::Load(tag, up_starts - lanes);
+  auto one_two_start = hn::Load(tag, up_starts - 2 * lanes);
+  auto two_one_start = hn::Load(tag, starts - lanes);
+  for (std::ptrdiff_t i = 0; i < end; i += lanes) {
     const auto takes_one_two = hn::Lt(one_two, one_one);
     const auto one_best = hn::Min(one_two, one_one);
     const auto takes_two_one = hn::Lt(two_one, one_best);
     const auto best = hn::Min(two_one, one_best);
-    const auto one_start = hn::IfThenElse(takes_one_two, hn::LoadU(tag, up_start + i - 2),
-                                          hn::LoadU(tag, up_start + i - 1));
-    const auto best_start = hn::IfThenElse(takes_two_one, hn::LoadU(tag, start + i - 1), one_start);
-    auto added = LocalCosts(work, i, scale);
+    const auto one_start = hn::IfThenElse(takes_one_two, one_two_start, one_one_start);
+    const auto best_start = hn::IfThenElse(takes_two_one, two_one_start, one_start);
+    auto added = LocalCosts(work, static_cast<std::size_t>(i), scale);
     if constexpr (kDoublesTwoOne) {
       added = hn::Add(added, hn::IfThenElseZero(takes_two_one, added));
     }
-    hn::Store(hn::Add(best, added), tag, cost + i);
-    hn::Store(best_start, tag, start + i);
+    one_two = one_one;
+    one_two_start = one_one_start;
+    one_one = hn::Load(tag, up_costs + i);
+    one_one_start = hn::Load(tag, up_starts + i);
+    two_one = hn::Load(tag, costs + i);
+    two_one_start = hn::Load(tag, starts + i);
+    hn::Store(hn::Add(best, added), tag, costs + i);
+    hn::Store(best_start, tag, starts + i);
   }
 }
 
-// Keeps a finished row's last two columns for the next tile, and puts those of the tile before in
-// front of it for the rows below.
-void ExchangeLeftColumns(std::size_t count, TileRow& row, LeftColumns& left) {
-  LeftColumns next;
-  double* cost = row.cost();
-  double* start = row.start();
-  for (std::ptrdiff_t i = 0; i < 2; ++i) {
-    const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(count) - 2 + i;
-    next.cost[i] = cost[column];
-    next.start[i] = start[column];
-    cost[i - 2] = left.cost[i];
-    start[i - 2] = left.start[i];
+// Puts the last two columns of every stripe in front of the next one, and in front of the first
+// those that the tile before left; leaves the last two of a full tile for the next.
+void LinkStripes(const Stripes& stripes, StripedNumbers& row, double (&left)[2]) {
+  const DoublesTag tag;
+  const std::size_t lanes = stripes.lanes;
+  double* vectors = row.vectors();
+  double* before = vectors - 2 * lanes;
+  const double* last = vectors + (stripes.length - 2) * lanes;
+  const double next[2] = {last[lanes - 1], last[2 * lanes - 1]};
+  for (std::size_t i = 0; i < 2; ++i) {
+    hn::Store(hn::LoadU(tag, last + i * lanes - 1), tag, before + i * lanes);
+    before[i * lanes] = left[i];
+    left[i] = next[i];
   }
-  left = next;
 }
 
-void WriteResult(const TileRow& row, std::size_t from, std::size_t count, double template_columns,
-                 double* HWY_RESTRICT delta, std::int32_t* HWY_RESTRICT start) {
-  const double* costs = row.costs + kMargin;
-  const double* starts = row.starts + kMargin;
-  for (std::size_t i = from; i < count; ++i) {
-    delta[i - from] = costs[i] / template_columns;
-    start[i - from] = static_cast<std::int32_t>(starts[i]);
+void WriteResult(const TileRow& row, const Stripes& stripes, std::size_t from,
+                 double template_columns, double* HWY_RESTRICT delta,
+                 std::int32_t* HWY_RESTRICT start) {
+  const double* costs = row.costs.vectors();
+  const double* starts = row.starts.vectors();
+  std::size_t column = 0;
+  for (std::size_t lane = 0; lane < stripes.lanes; ++lane) {
+    for (std::size_t v = 0; v < stripes.length && column < stripes.count; ++v, ++column) {
+      if (column < from) continue;
+      delta[column - from] = costs[v * stripes.lanes + lane] / template_columns;
+      start[column - from] = static_cast<std::int32_t>(starts[v * stripes.lanes + lane]);
+    }
   }
 }
 
 // All rows of the tile that begins at `first_column`; returns the last.
-TileRow& ScanTile(const ScanPlan& plan, const std::uint64_t* columns, std::size_t first_column,
-                  std::size_t count, Workspace& work, std::vector<LeftColumns>& left) {
-  SplitIntoNibbles(plan, columns + first_column, count, work);
+const TileRow& ScanTile(const ScanPlan& plan, const std::uint64_t* columns,
+                        std::size_t first_column, const Stripes& stripes, Workspace& work,
+                        std::vector<LeftColumns>& left) {
+  StripeWords(columns + first_column, stripes, work);
+  SplitIntoNibbles(stripes.padded_count(), work);
   const std::vector<ScanRow>& rows = plan.rows();
-  CountMismatches(rows[0], count, work);
-  FillFirstRow(rows[0], first_column, count, work.rows[0], work);
-  ExchangeLeftColumns(count, work.rows[0], left[0]);
-  FillUnreachable(count, work.rows[1]);
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    TileRow& one_up = work.rows[(k - 1) % 2];
+  FillUnreachable(work.rows[1]);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const TileRow& one_up = work.rows[(k + 1) % 2];
     TileRow& row = work.rows[k % 2];
-    CountMismatches(rows[k], count, work);
-    if (plan.doubles_two_one()) {
-      FillRow<true>(rows[k], count, one_up, row, work);
+    CountMismatches(rows[k], stripes.padded_count(), work);
+    if (k == 0) {
+      FillFirstRow(rows[k], first_column, stripes, work, row);
+    } else if (plan.doubles_two_one()) {
+      FillRow<true>(rows[k], stripes, work, one_up, row);
     } else {
-      FillRow<false>(rows[k], count, one_up, row, work);
+      FillRow<false>(rows[k], stripes, work, one_up, row);
     }
-    ExchangeLeftColumns(count, row, left[k]);
+    LinkStripes(stripes, row.costs, left[k].cost);
+    LinkStripes(stripes, row.starts, left[k].start);
   }
   return work.rows[(rows.size() - 1) % 2];
 }
@@ -232,11 +322,13 @@ void ScanRangeOnTarget(const ScanPlan& plan, const std::uint64_t* columns, std::
   const auto work = std::make_unique<Workspace>();
   std::vector<LeftColumns> left(rows);
   for (std::size_t tile = begin - halo; tile < end; tile += kTile) {
-    const std::size_t count = std::min(kTile, end - tile);
-    const TileRow& last = ScanTile(plan, columns, tile, count, *work, left);
-    const std::size_t from = std::min(count, begin > tile ? begin - tile : 0);
+    const Stripes stripes(std::min(kTile, end - tile));
+    const TileRow& last = ScanTile(plan, columns, tile, stripes, *work, left);
+    // A tile may lie in the halo altogether.
+    const std::size_t from = std::min(stripes.count, begin > tile ? begin - tile : 0);
+    if (from == stripes.count) continue;
     const std::size_t written = tile + from - begin;
-    WriteResult(last, from, count, static_cast<double>(rows), delta + written, start + written);
+    WriteResult(last, stripes, from, static_cast<double>(rows), delta + written, start + written);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "search/kernels/scan_plan.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace kinebase::internal {
@@ -32,10 +31,6 @@ ScanPlan::ScanPlan(const QuantizedTemplate& motion_template)
       if (looks_at(column, nibble)) tables_.push_back(MakeTable(column, nibble));
     }
     rows_.push_back({column.scale, std::span(tables_).subspan(first)});
-  }
-  for (std::size_t nibble = 0; nibble < kNibbles; ++nibble) {
-    const auto looks = [&](const QuantizedColumn& column) { return looks_at(column, nibble); };
-    if (std::ranges::any_of(motion_template.columns, looks)) nibbles_.push_back(nibble);
   }
 }
 

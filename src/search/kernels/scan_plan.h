@@ -33,14 +33,12 @@ class ScanPlan {
   ScanPlan& operator=(const ScanPlan&) = delete;
 
   [[nodiscard]] const std::vector<ScanRow>& rows() const { return rows_; }
-  [[nodiscard]] const std::vector<std::size_t>& nibbles() const { return nibbles_; }
   [[nodiscard]] bool doubles_two_one() const { return doubles_two_one_; }
 
  private:
   std::vector<NibbleTable> tables_;
-  std::vector<ScanRow> rows_;         // One for each template column.
-  std::vector<std::size_t> nibbles_;  // Those that any column looks at.
-  bool doubles_two_one_;              // Profile bonn.
+  std::vector<ScanRow> rows_;  // One for each template column.
+  bool doubles_two_one_;       // Profile bonn.
 };
 
 // Δ and starts of the columns [begin, end) of a recording; the same whatever the cut.

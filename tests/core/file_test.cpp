@@ -1,0 +1,212 @@
+// Reading and writing whole files.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "kinebase/core/error.h"
+#include "kinebase/core/mapped_file.h"
+#include "kinebase/core/output_file.h"
+#include "support/files.h"
+#include "support/temporary_folder.h"
+
+namespace kinebase {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> NamesIn(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(MappedFile, HoldsTheBytesOfTheFile) {
+  const test::TemporaryFolder folder;
+  const std::string bytes("a\0b\r\n\xFF", 6);
+  test::WriteText(folder.path() / "f", bytes);
+  MappedFile file(folder.path() / "f");
+  EXPECT_EQ(file.text(), bytes);
+  const MappedFile moved = std::move(file);
+  EXPECT_EQ(moved.text(), bytes);
+}
+
+TEST(MappedFile, OpensAnEmptyFile) {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder.path() / "empty", "");
+  EXPECT_EQ(MappedFile(folder.path() / "empty").text(), "");
+}
+
+TEST(MappedFile, SaysThatAFileIsMissing) {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder.path() / "file", "x");
+  for (const fs::path& path : {folder.path() / "missing", folder.path() / "file" / "below"}) {
+    const Error error = test::ErrorOf([&] { MappedFile file(path); });
+    EXPECT_EQ(error.code(), ErrorCode::kNotFound);
+    EXPECT_THAT(error.what(), HasSubstr(path.string()));
+  }
+}
+
+TEST(MappedFile, RefusesWhatIsNoFile) {
+  const test::TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const fs::path& path : {folder.path(), pipe, fs::path("/dev/null")}) {
+    EXPECT_EQ(test::ErrorOf([&] { MappedFile file(path); }).code(), ErrorCode::kIoFailure) << path;
+  }
+}
+
+TEST(WriteFile, WritesWhatItIsGivenAndMakesFolders) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "a" / "b" / "f";
+  const std::string bytes("a\0\r\n", 4);
+  WriteFile(path, bytes, Overwrite::kNo);
+  EXPECT_EQ(test::ReadText(path), bytes);
+  EXPECT_THAT(NamesIn(path.parent_path()), ElementsAre("f"));
+}
+
+TEST(WriteFile, RefusesToOverwriteUnlessAsked) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "f";
+  WriteFile(path, "old", Overwrite::kNo);
+  const Error error = test::ErrorOf([&] { WriteFile(path, "new", Overwrite::kNo); });
+  EXPECT_EQ(error.code(), ErrorCode::kAlreadyExists);
+  EXPECT_THAT(error.what(), HasSubstr("--force"));
+  EXPECT_EQ(test::ReadText(path), "old");
+  WriteFile(path, "new", Overwrite::kYes);
+  EXPECT_EQ(test::ReadText(path), "new");
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("f"));
+}
+
+TEST(WriteFile, WritesThroughALinkAndKeepsIt) {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder.path() / "target", "old");
+  fs::create_symlink("target", folder.path() / "link");
+  WriteFile(folder.path() / "link", "new", Overwrite::kYes);
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+  EXPECT_EQ(test::ReadText(folder.path() / "target"), "new");
+}
+
+TEST(WriteFile, LeavesDevicesAlone) {
+  for (const Overwrite overwrite : {Overwrite::kNo, Overwrite::kYes}) {
+    EXPECT_EQ(test::ErrorOf([&] { WriteFile("/dev/null", "x", overwrite); }).code(),
+              ErrorCode::kIoFailure);
+  }
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(WriteFile, NamesAFolderThatStandsInTheWay) {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder.path() / "d");
+  test::WriteText(folder.path() / "file", "x");
+  for (const Overwrite overwrite : {Overwrite::kNo, Overwrite::kYes}) {
+    EXPECT_EQ(test::ErrorOf([&] { WriteFile(folder.path() / "d", "x", overwrite); }).code(),
+              ErrorCode::kIoFailure);
+    EXPECT_EQ(
+        test::ErrorOf([&] { WriteFile(folder.path() / "file" / "f", "x", overwrite); }).code(),
+        ErrorCode::kIoFailure);
+  }
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("d", "file"));
+}
+
+TEST(WriteFile, TakesTheLongestNameThatTheSystemAllows) {
+  const test::TemporaryFolder folder;
+  const std::string name(255, 'n');
+  WriteFile(folder.path() / name, "x", Overwrite::kNo);
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre(name));
+  EXPECT_EQ(
+      test::ErrorOf([&] { WriteFile(folder.path() / (name + 'n'), "x", Overwrite::kNo); }).code(),
+      ErrorCode::kIoFailure);
+}
+
+// In a process of its own: a limit on file sizes stands for a full disk.
+void WriteWithFullDisk(const fs::path& folder) {
+  const rlimit limit{.rlim_cur = 1000, .rlim_max = 1000};
+  ::signal(SIGXFSZ, SIG_IGN);
+  if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(2);
+  try {
+    WriteFile(folder / "f", std::string(5000, 'x'), Overwrite::kYes);
+    ::_exit(3);
+  } catch (const Error& error) {
+    ::_exit(error.code() == ErrorCode::kIoFailure ? 0 : 4);
+  }
+}
+
+TEST(WriteFileDeathTest, LeavesEverythingAsItWasOnAFullDisk) {
+  GTEST_FLAG_SET(death_test_style, "fast");
+  const test::TemporaryFolder folder;
+  WriteFile(folder.path() / "f", "old", Overwrite::kNo);
+  EXPECT_EXIT(WriteWithFullDisk(folder.path()), testing::ExitedWithCode(0), "");
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("f"));
+  EXPECT_EQ(test::ReadText(folder.path() / "f"), "old");
+}
+
+TEST(WriteFile, LetsOneOfManyWritersWinWhole) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "f";
+  std::atomic<int> winners{0};
+  std::vector<std::jthread> writers;
+  writers.reserve(8);
+  for (int i = 0; i < 8; ++i) {
+    writers.emplace_back([&, i] {
+      try {
+        WriteFile(path, std::string(100'000, static_cast<char>('a' + i)), Overwrite::kNo);
+        ++winners;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kAlreadyExists);
+      }
+    });
+  }
+  writers.clear();
+  EXPECT_EQ(winners.load(), 1);
+  const std::string text = test::ReadText(path);
+  EXPECT_EQ(text, std::string(100'000, text.front()));
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("f"));
+}
+
+TEST(WriteFile, IsNeverSeenHalfWritten) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "f";
+  WriteFile(path, std::string(200'000, 'a'), Overwrite::kNo);
+  std::atomic<bool> stop{false};
+  std::jthread writer([&] {
+    for (int i = 0; i < 20; ++i) {
+      WriteFile(path, std::string(200'000, static_cast<char>('a' + i)), Overwrite::kYes);
+    }
+    stop = true;
+  });
+  while (!stop) {
+    const MappedFile file(path);
+    ASSERT_EQ(file.text().size(), 200'000);
+    ASSERT_EQ(file.text().find_first_not_of(file.text().front()), std::string_view::npos);
+  }
+}
+
+TEST(CheckWritable, AsksBeforeLongWorkBegins) {
+  const test::TemporaryFolder folder;
+  test::WriteText(folder.path() / "f", "x");
+  EXPECT_NO_THROW(CheckWritable(folder.path() / "new", Overwrite::kNo));
+  EXPECT_NO_THROW(CheckWritable(folder.path() / "f", Overwrite::kYes));
+  EXPECT_EQ(test::ErrorOf([&] { CheckWritable(folder.path() / "f", Overwrite::kNo); }).code(),
+            ErrorCode::kAlreadyExists);
+  EXPECT_EQ(test::ErrorOf([&] { CheckWritable(folder.path(), Overwrite::kYes); }).code(),
+            ErrorCode::kIoFailure);
+}
+
+}  // namespace
+}  // namespace kinebase

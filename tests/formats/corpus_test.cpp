@@ -1,0 +1,63 @@
+// Replays fuzz/corpus: files named good_… are read, bad_… are refused with a message that names
+// them, all others end in either.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "kinebase/core/error.h"
+#include "kinebase/formats/amc.h"
+#include "kinebase/formats/asf.h"
+#include "support/files.h"
+
+namespace kinebase {
+namespace {
+
+std::filesystem::path Corpus(std::string_view format) {
+  return std::filesystem::path(KINEBASE_SOURCE_DIR) / "fuzz" / "corpus" / format;
+}
+
+// Calls `read` for every file. It may throw nothing but kinebase::Error.
+void Replay(std::string_view format,
+            const std::function<void(const std::filesystem::path&)>& read) {
+  int good = 0;
+  int bad = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(Corpus(format))) {
+    const std::string name = entry.path().filename().string();
+    SCOPED_TRACE(name);
+    bool was_read = false;
+    try {
+      read(entry.path());
+      was_read = true;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      EXPECT_FALSE(name.starts_with("good_")) << error.what();
+    }
+    EXPECT_FALSE(was_read && name.starts_with("bad_"));
+    good += name.starts_with("good_") ? 1 : 0;
+    bad += name.starts_with("bad_") ? 1 : 0;
+  }
+  EXPECT_GE(good, 5);
+  EXPECT_GE(bad, 10);
+}
+
+TEST(AsfCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("asf", [](const auto& path) {
+    const AsfSkeleton asf = ReadAsf(path);
+    EXPECT_EQ(ParseAsf(FormatAsf(asf), path), asf);
+  });
+}
+
+TEST(AmcCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("amc", [](const auto& path) {
+    const AmcMotion amc = ReadAmc(path);
+    EXPECT_EQ(ParseAmc(FormatAmc(amc), path), amc);
+  });
+}
+
+}  // namespace
+}  // namespace kinebase
