@@ -213,7 +213,7 @@ TEST(OriginalParser, HasTheSameBoundingBoxAndRootTranslation) {
   KINEBASE_NEEDS_TEST_DATA();
   ForEachClip([](const Clip& clip) {
     const BoundingBox box = ComputeBoundingBox(ForwardKinematics(clip.loaded.motion));
-    for (int axis = 0; axis < 3; ++axis) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double low = clip.oracle.bounding_box_inch[2 * axis] * kCentimetresPerInch;
       const double high = clip.oracle.bounding_box_inch[2 * axis + 1] * kCentimetresPerInch;
       EXPECT_NEAR(box.low_cm[axis], low, 1e-6);
