@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include "fmt/format.h"
@@ -26,6 +27,7 @@ EulerOrder OrderOrFail(const std::string& text, const std::string& where) {
 
 std::vector<Dof> ToDofs(const std::vector<AsfDof>& dofs) {
   std::vector<Dof> result;
+  result.reserve(dofs.size());
   for (const AsfDof dof : dofs) result.push_back(static_cast<Dof>(dof));
   return result;
 }
@@ -81,8 +83,9 @@ class SkeletonBuilder {
     const auto push = [&](int parent) {
       const auto found = children_.find(joints_[static_cast<std::size_t>(parent)].bone_name);
       if (found == children_.end()) return;
-      for (auto child = found->second.rbegin(); child != found->second.rend(); ++child) {
-        open.emplace_back(parent, *child);
+      // The last pushed is taken first.
+      for (const std::string& child : std::views::reverse(found->second)) {
+        open.emplace_back(parent, child);
       }
     };
     push(root);

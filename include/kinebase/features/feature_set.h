@@ -90,9 +90,9 @@ struct FeatureSet {
   [[nodiscard]] std::vector<int> MirrorRows() const;  // [row] → row of the other side.
 };
 
-// Errors  MalformedFile with the line: unknown type, joint, unit or key, a wrong number of joints,
-// a
-//         mirror partner that does not exist or does not answer, more than kMaxFeatures features.
+// Errors  MalformedFile with the line: an unknown type, joint, unit or key, a wrong number of
+//         joints, a mirror partner that does not exist or does not answer, more than kMaxFeatures
+//         features.
 [[nodiscard]] FeatureSet ParseFeatureSet(std::string_view toml, const std::filesystem::path& file);
 
 // "bonn", "paper", or a file. Errors: NotFound, naming the built-in ones; those of ParseFeatureSet.

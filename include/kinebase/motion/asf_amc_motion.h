@@ -41,11 +41,10 @@ struct AsfBuildOptions {
                                                             Diagnostics& diagnostics);
 
 // asf, skeleton  A record and what BuildSkeleton made of it.
-// Errors         Mismatch, with the AMC's line: a bone the skeleton lacks or that has no DOFs
-// there,
-//                another number of values than DOFs.
+// Errors         Mismatch, with the AMC's line: a bone that the skeleton lacks, another number of
+//                values than DOFs there.
 // diagnostics    Bones with DOFs that the motion lacks (they stay neutral); missing values
-//                (replaced by the frame before); frame numbers that jump.
+//                (replaced by those of the frame before).
 [[nodiscard]] Motion BuildMotion(const AmcMotion& amc, const AsfSkeleton& asf,
                                  std::shared_ptr<const Skeleton> skeleton, double rate_hz,
                                  const AsfBuildOptions& options, Diagnostics& diagnostics);
