@@ -10,6 +10,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/formats/amc.h"
 #include "kinebase/formats/asf.h"
+#include "kinebase/formats/bvh.h"
 #include "support/files.h"
 
 namespace kinebase {
@@ -56,6 +57,13 @@ TEST(AmcCorpus, IsReadOrRefusedAsItsNamesSay) {
   Replay("amc", [](const auto& path) {
     const AmcMotion amc = ReadAmc(path);
     EXPECT_EQ(ParseAmc(FormatAmc(amc), path), amc);
+  });
+}
+
+TEST(BvhCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("bvh", [](const auto& path) {
+    const BvhMotion bvh = ReadBvh(path);
+    EXPECT_EQ(ParseBvh(FormatBvh(bvh), path), bvh);
   });
 }
 
