@@ -1,5 +1,5 @@
 // Learns a motion from one person's examples and finds it in a long take of another: the whole
-// method in one file. Made-up motion stands in for recordings; LoadMotion() reads yours.
+// method in one file. Made-up motion stands in for recordings; LoadRecording() reads yours.
 
 #include <algorithm>
 #include <cstdio>

@@ -104,6 +104,26 @@ void AddLoadOptions(CLI::App& command, CommonOptions& options) {
           "What an ASF's ':units length u' means: v / u inches, or v · u centimetres")
       ->check(OneOf({"auto", "inches", "centimetres"}))
       ->type_name("auto|inches|centimetres");
+  command
+      .add_option_function<std::string>(
+          "--source-up",
+          [&options](const std::string& axis) { options.load.up_axis = ParseUpAxis(axis); },
+          "Axis that points up in the file, where it does not tell or tells wrong")
+      ->check(OneOf({"x", "y", "z"}))
+      ->type_name("x|y|z");
+  command
+      .add_option("--source-units", options.load.units,
+                  "Unit of lengths in the file, where it does not tell or tells wrong")
+      ->check(OneOf({"mm", "cm", "m", "inch"}))
+      ->type_name("mm|cm|m|inch");
+  command
+      .add_option("--names", options.load.marker_names,
+                  "Which of the file's names is which marker (MNM)")
+      ->type_name("FILE");
+  command
+      .add_option("--marker-set", options.load.marker_set,
+                  "Which markers tell where joints are (TOML; default: the built-in sets)")
+      ->type_name("FILE");
 }
 
 ProgressCallback MakeProgress(const CommonOptions& options) {

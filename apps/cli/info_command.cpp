@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/file_contents.h"
 #include "fmt/format.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/library/takes.h"
@@ -20,20 +21,32 @@ struct InfoOptions {
 // One file, or why it could not be read.
 struct FileInfo {
   std::filesystem::path path;
-  std::optional<LoadedMotion> loaded;
+  std::optional<Recording> recording;
   BoundingBox box;
+  std::vector<JointSource> joints;  // Where the standard joints are; empty if they are not.
+  std::string why_no_joints;
   std::optional<Error> error;
 };
 
 FileInfo Inspect(const std::filesystem::path& path, const LoadOptions& options) {
   FileInfo info{.path = path};
   try {
-    info.loaded = LoadMotion(path, options);
-    info.box = ComputeBoundingBox(ForwardKinematics(info.loaded->motion));
+    Recording& recording = info.recording.emplace(LoadRecording(path, options));
+    info.box = recording.has_skeleton() ? ComputeBoundingBox(ForwardKinematics(recording.motion))
+                                        : ComputeBoundingBox(recording.markers);
   } catch (const Error& error) {
+    info.recording.reset();
     info.error = error;
+    return info;
   } catch (const std::bad_alloc&) {
+    info.recording.reset();
     info.error = Error(ErrorCode::kIoFailure, "needs more memory than there is", {.file = path});
+    return info;
+  }
+  try {
+    info.joints = FindStandardJoints(*info.recording, info.recording->diagnostics);
+  } catch (const Error& error) {
+    info.why_no_joints = error.message();
   }
   return info;
 }
@@ -51,51 +64,82 @@ Json ToJson(const Diagnostics& diagnostics) {
   return list;
 }
 
+Json ToJson(const std::vector<JointSource>& joints) {
+  Json list = Json::array();
+  for (const JointSource& joint : joints) {
+    list.push_back({{"joint", ToString(joint.joint)},
+                    {"source", joint.source},
+                    {"match", ToString(joint.match)},
+                    {"confidence", joint.confidence}});
+  }
+  return list;
+}
+
 Json ToJson(const FileInfo& info) {
-  const LoadedMotion& loaded = *info.loaded;
-  const Motion& motion = loaded.motion;
+  const Recording& recording = *info.recording;
   const auto corner = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
   return {
       {"path", info.path.string()},
-      {"format", loaded.format},
-      {"frames", motion.frame_count},
-      {"first_frame", motion.first_frame},
-      {"rate_hz", motion.rate_hz},
-      {"duration_s", motion.duration_s()},
-      {"joints", motion.joint_count()},
-      {"markers", 0},
-      {"units", loaded.units},
-      {"up_axis", loaded.up_axis},
+      {"format", recording.format},
+      {"frames", recording.frame_count()},
+      {"first_frame", recording.first_frame()},
+      {"rate_hz", recording.rate_hz()},
+      {"duration_s", recording.duration_s()},
+      {"joints", recording.motion.joint_count()},
+      {"markers", recording.markers.marker_count()},
+      {"units", recording.units},
+      {"up_axis", recording.up_axis},
       {"bounding_box_cm", {{"low", corner(info.box.low_cm)}, {"high", corner(info.box.high_cm)}}},
-      {"actor", TextOrNull(loaded.name.actor)},
-      {"class", TextOrNull(loaded.name.class_name)},
-      {"take", TextOrNull(loaded.name.take)},
-      {"skeleton", TextOrNull(loaded.skeleton_path.string())},
-      {"diagnostics", ToJson(loaded.diagnostics)}};
+      {"actor", TextOrNull(recording.name.actor)},
+      {"class", TextOrNull(recording.name.class_name)},
+      {"take", TextOrNull(recording.name.take)},
+      {"skeleton", TextOrNull(recording.skeleton_path.string())},
+      {"contents", ContentsAsJson(recording)},
+      {"standard_joints", ToJson(info.joints)},
+      {"no_standard_joints", TextOrNull(info.why_no_joints)},
+      {"diagnostics", ToJson(recording.diagnostics)}};
+}
+
+// "24 of 24; nearest instead: ltoes (LeftFoot)".
+std::string DescribeJoints(const FileInfo& info) {
+  if (!info.why_no_joints.empty()) return "cannot be searched: " + info.why_no_joints;
+  std::string replaced;
+  for (const JointSource& joint : info.joints) {
+    if (joint.match != JointMatch::kNearest) continue;
+    replaced += fmt::format("{}{} at {}", replaced.empty() ? "" : ", ", ToString(joint.joint),
+                            joint.source);
+  }
+  return replaced.empty() ? "all found" : "all found; only near: " + replaced;
 }
 
 std::string Describe(const FileInfo& info) {
-  const LoadedMotion& loaded = *info.loaded;
-  const Motion& motion = loaded.motion;
+  const Recording& recording = *info.recording;
   const Eigen::Vector3d size = info.box.high_cm - info.box.low_cm;
   std::string text = OnOneLine(info.path.string()) + '\n';
   const auto line = [&](std::string_view name, const std::string& value) {
     if (!value.empty()) text += fmt::format("  {:<10}{}\n", name, OnOneLine(value));
   };
-  line("format", std::string(loaded.format));
-  line("frames", motion.first_frame == 1
-                     ? std::to_string(motion.frame_count)
-                     : fmt::format("{}, numbered from {}", motion.frame_count, motion.first_frame));
-  line("duration", fmt::format("{:.2f} s at {:g} Hz", motion.duration_s(), motion.rate_hz));
-  line("joints", std::to_string(motion.joint_count()));
-  line("units", fmt::format("{}, {} up", loaded.units, loaded.up_axis));
+  line("format", std::string(recording.format));
+  line("frames",
+       recording.first_frame() == 1
+           ? std::to_string(recording.frame_count())
+           : fmt::format("{}, numbered from {}", recording.frame_count(), recording.first_frame()));
+  line("duration", fmt::format("{:.2f} s at {:g} Hz", recording.duration_s(), recording.rate_hz()));
+  if (recording.has_skeleton()) {
+    line("joints", std::to_string(recording.motion.joint_count()));
+  } else {
+    line("markers", DescribeMarkers(recording.markers));
+  }
+  line("units", fmt::format("{}, {} up", recording.units, recording.up_axis));
   line("extent",
        fmt::format("{:.0f} × {:.0f} × {:.0f} cm (x, y, z)", size.x(), size.y(), size.z()));
-  line("actor", loaded.name.actor);
-  line("class", loaded.name.class_name);
-  line("take", loaded.name.take);
-  line("skeleton", loaded.skeleton_path.string());
-  for (const Diagnostic& diagnostic : loaded.diagnostics) {
+  line("actor", recording.name.actor);
+  line("class", recording.name.class_name);
+  line("take", recording.name.take);
+  line("skeleton", recording.skeleton_path.string());
+  for (const auto& [name, value] : DescribeContents(recording)) line(name, value);
+  line("standard", DescribeJoints(info));
+  for (const Diagnostic& diagnostic : recording.diagnostics) {
     line(ToString(diagnostic.severity),
          diagnostic.line > 0 ? fmt::format("line {}: {}", diagnostic.line, diagnostic.message)
                              : diagnostic.message);
@@ -105,16 +149,20 @@ std::string Describe(const FileInfo& info) {
 
 // Many files, a line each.
 std::string DescribeAll(const std::vector<FileInfo>& files) {
-  TextTable table({"file", "actor", "class", ">frames", ">Hz", ">s", ">joints", ">odd"});
+  TextTable table({"file", "format", "actor", "class", ">frames", ">Hz", ">s", ">joints",
+                   ">markers", "searchable", ">odd"});
+  const auto count = [](int number) { return number > 0 ? std::to_string(number) : ""; };
   for (const FileInfo& info : files) {
-    if (!info.loaded) continue;
-    const Motion& motion = info.loaded->motion;
+    if (!info.recording) continue;
+    const Recording& recording = *info.recording;
     const auto odd =
-        std::ranges::count(info.loaded->diagnostics, Severity::kWarning, &Diagnostic::severity);
-    table.Add({info.path.string(), info.loaded->name.actor, info.loaded->name.class_name,
-               std::to_string(motion.frame_count), fmt::format("{:g}", motion.rate_hz),
-               fmt::format("{:.2f}", motion.duration_s()), std::to_string(motion.joint_count()),
-               odd > 0 ? std::to_string(odd) : ""});
+        std::ranges::count(recording.diagnostics, Severity::kWarning, &Diagnostic::severity);
+    table.Add({info.path.string(), std::string(recording.format), recording.name.actor,
+               recording.name.class_name, std::to_string(recording.frame_count()),
+               fmt::format("{:g}", recording.rate_hz()),
+               fmt::format("{:.2f}", recording.duration_s()), count(recording.motion.joint_count()),
+               count(recording.markers.marker_count()), info.why_no_joints.empty() ? "yes" : "no",
+               count(static_cast<int>(odd))});
   }
   return table.ToString();
 }
@@ -127,7 +175,7 @@ int Run(const InfoOptions& options) {
   Json list = Json::array();
   Json failed = Json::array();
   for (const FileInfo& info : files) {
-    if (info.loaded) {
+    if (info.recording) {
       if (options.common.json) list.push_back(ToJson(info));
       continue;
     }

@@ -21,8 +21,7 @@ struct JointsOptions {
   std::string rotations;  // "", "quaternions" or "euler".
 };
 
-std::string PositionTable(const Motion& motion) {
-  const JointTrajectories joints = StandardJoints(motion);
+std::string PositionTable(const JointTrajectories& joints) {
   std::string text = "frame";
   for (int j = 0; j < kStandardJointCount; ++j) {
     const auto name = ToString(static_cast<StandardJoint>(j));
@@ -78,24 +77,34 @@ std::string RotationTable(const Motion& motion, bool euler) {
   return text + '\n';
 }
 
+std::string MakeTable(const Recording& recording, const JointsOptions& options) {
+  Diagnostics diagnostics = recording.diagnostics;
+  if (options.rotations.empty()) {
+    const std::string table = PositionTable(StandardJoints(recording, diagnostics));
+    PrintDiagnostics(options.common, recording.path, diagnostics);
+    return table;
+  }
+  PrintDiagnostics(options.common, recording.path, diagnostics);
+  if (!recording.has_skeleton()) {
+    throw Error(ErrorCode::kMismatch, "holds markers; --rotations needs a skeleton",
+                {recording.path});
+  }
+  return RotationTable(recording.motion, options.rotations == "euler");
+}
+
 int Run(const JointsOptions& options) {
   const bool is_printed = IsStandardOutput(options.output);
   if (is_printed && options.common.json)
     throw UsageError("--json needs -o FILE: the table itself is CSV");
   if (!is_printed) CheckWritable(options.output, options.common.overwrite());
   const TakeStretch stretch = ParseMotionArgument(options.motion);
-  const LoadedMotion loaded = LoadMotion(stretch.file, options.common.load);
-  PrintDiagnostics(options.common, stretch.file, loaded.diagnostics);
-  const Motion motion = CutToStretch(loaded.motion, stretch);
-  WriteTextOrPrint(options.output,
-                   options.rotations.empty() ? PositionTable(motion)
-                                             : RotationTable(motion, options.rotations == "euler"),
-                   options.common);
+  const Recording recording = LoadStretch(stretch, options.common.load);
+  WriteTextOrPrint(options.output, MakeTable(recording, options), options.common);
   if (is_printed) return kDone;
   if (options.common.json) {
     PrintJson({{"file", options.output.string()},
-               {"frames", motion.frame_count},
-               {"rate_hz", motion.rate_hz}});
+               {"frames", recording.frame_count()},
+               {"rate_hz", recording.rate_hz()}});
   } else {
     PrintWritten(options.common, options.output);
   }

@@ -60,13 +60,18 @@ int RunProgram(int argc, char** argv) {
   program.require_subcommand(1);
   program.get_formatter()->column_width(36);
   kinebase::cli::AddInfoCommand(program, exit_code);
+  kinebase::cli::AddConvertCommand(program, exit_code);
   kinebase::cli::AddRenderCommand(program, exit_code);
   kinebase::cli::AddJointsCommand(program, exit_code);
   kinebase::cli::AddFeaturesCommand(program, exit_code);
+  kinebase::cli::AddCutCommand(program, exit_code);
+  kinebase::cli::AddSortCommand(program, exit_code);
+  kinebase::cli::AddRenameCommand(program, exit_code);
   kinebase::cli::AddLearnCommand(program, exit_code);
   kinebase::cli::AddTemplateCommand(program, exit_code);
   kinebase::cli::AddSearchCommand(program, exit_code);
   kinebase::cli::AddSynthCommand(program, exit_code);
+  kinebase::cli::AddHdm05Command(program, exit_code);
   kinebase::cli::AddManualCommands(program, exit_code);
   LeaveOutTypesOfArguments(program);
   if (std::any_of(argv + 1, argv + argc, [](const char* text) { return *text == '\0'; })) {

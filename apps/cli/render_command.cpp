@@ -39,11 +39,12 @@ PoseStripRow LoadRow(const std::string& text, const RenderOptions& options) {
     stretch = ParseMotionArgument(text + ':' + options.frames);
     if (stretch.first_frame == 0) throw UsageError("--frames takes first-last, as in 120-480");
   }
-  const LoadedMotion loaded = LoadMotion(stretch.file, options.common.load);
-  PrintDiagnostics(options.common, stretch.file, loaded.diagnostics);
-  const Motion motion = CutToStretch(loaded.motion, stretch);
+  const Recording recording = LoadStretch(stretch, options.common.load);
+  Diagnostics diagnostics = recording.diagnostics;
+  JointTrajectories joints = StandardJoints(recording, diagnostics);
+  PrintDiagnostics(options.common, stretch.file, diagnostics);
   return {.title = stretch.file.stem().string(),
-          .standard_joints = StandardJoints(motion),
+          .standard_joints = std::move(joints),
           .first_frame = stretch.first_frame == 0 ? 1 : stretch.first_frame};
 }
 

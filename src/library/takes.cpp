@@ -12,8 +12,6 @@
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
-#include "kinebase/motion/kinematics.h"
-#include "kinebase/motion/motion_editing.h"
 
 namespace kinebase {
 namespace {
@@ -23,9 +21,15 @@ namespace fs = std::filesystem;
 std::string KnownFormats() {
   std::string text;
   for (const MotionFormat& format : MotionFormats()) {
+    if (format.load == nullptr) continue;
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", format.extension, format.name);
   }
   return text;
+}
+
+bool IsReadable(const fs::path& file) {
+  const MotionFormat* format = FindMotionFormat(file);
+  return format != nullptr && format->load != nullptr;
 }
 
 std::string JoinPaths(const std::vector<fs::path>& paths) {
@@ -67,8 +71,7 @@ class FileIndex {
  public:
   explicit FileIndex(std::span<const fs::path> folders) {
     for (const fs::path& folder : folders) {
-      for (fs::path& file : FilesBelow(
-               folder, [](const fs::path& path) { return FindMotionFormat(path) != nullptr; })) {
+      for (fs::path& file : FilesBelow(folder, IsReadable)) {
         std::string name = file.filename().string();
         files_.try_emplace(std::move(name), std::move(file));  // Earlier folders win.
       }
@@ -94,15 +97,14 @@ std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
       throw Error(ErrorCode::kNotFound, "does not exist", {path});
     }
     if (fs::is_directory(path, unreachable)) {
-      auto below =
-          FilesBelow(path, [](const fs::path& file) { return FindMotionFormat(file) != nullptr; });
+      auto below = FilesBelow(path, IsReadable);
       if (below.empty()) {
         throw Error(ErrorCode::kNotFound,
                     "holds no motion file; looked for " + KnownFormats() + " in it and below",
                     {path});
       }
       files.insert(files.end(), below.begin(), below.end());
-    } else if (FindMotionFormat(path) == nullptr) {
+    } else if (!IsReadable(path)) {
       throw Error(ErrorCode::kInvalidArgument,
                   fmt::format("is no motion file that Kinebase knows; known: {}", KnownFormats()),
                   {path});
@@ -135,34 +137,38 @@ TakeStretch ParseTakeStretch(const std::string& text) {
   return {.file = text.substr(0, colon), .first_frame = *first, .last_frame = *last};
 }
 
-Motion CutToStretch(const Motion& motion, const TakeStretch& stretch) {
-  if (stretch.first_frame == 0) return motion;
-  if (stretch.last_frame > motion.frame_count) {
+Recording CutToStretch(const Recording& recording, const TakeStretch& stretch) {
+  if (stretch.first_frame == 0) return recording;
+  if (stretch.last_frame > recording.frame_count()) {
     throw Error(ErrorCode::kInvalidArgument,
                 fmt::format("frames {} to {} are asked for; it has 1 to {}", stretch.first_frame,
-                            stretch.last_frame, motion.frame_count),
+                            stretch.last_frame, recording.frame_count()),
                 {stretch.file});
   }
-  return CutMotion(motion, static_cast<int>(stretch.first_frame) - 1,
-                   static_cast<int>(stretch.last_frame) - 1);
+  return CutRecording(recording, static_cast<int>(stretch.first_frame) - 1,
+                      static_cast<int>(stretch.last_frame) - 1);
+}
+
+Recording LoadStretch(const TakeStretch& stretch, const LoadOptions& options) {
+  Recording recording = LoadRecording(stretch.file, options);
+  return stretch.first_frame == 0 ? recording : CutToStretch(recording, stretch);
 }
 
 TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
                               double rate_hz, const LoadOptions& options) {
-  LoadedMotion loaded = LoadMotion(stretch.file, options);
-  const Motion motion = CutToStretch(loaded.motion, stretch);
+  Recording recording = LoadStretch(stretch, options);
   TakeFeatures take{.path = stretch.file,
                     .stretch = stretch,
-                    .name = std::move(loaded.name),
-                    .rate_hz = motion.rate_hz,
-                    .frame_count = motion.frame_count};
+                    .name = std::move(recording.name),
+                    .rate_hz = recording.rate_hz(),
+                    .frame_count = recording.frame_count(),
+                    .diagnostics = std::move(recording.diagnostics)};
   try {
-    take.features = ExtractFeatures(StandardJoints(motion), features, rate_hz);
+    take.features = ExtractFeatures(StandardJoints(recording, take.diagnostics), features, rate_hz);
   } catch (const Error& error) {
     if (!error.place().file.empty()) throw;
     throw Error(error.code(), error.message(), {stretch.file});
   }
-  take.diagnostics = std::move(loaded.diagnostics);
   return take;
 }
 

@@ -116,7 +116,7 @@ std::vector<Eigen::Vector3d> NeutralPose(const Skeleton& skeleton) {
   return pose;
 }
 
-JointTrajectories StandardJoints(const Skeleton& skeleton, const JointTrajectories& all_joints) {
+void CheckStandardJoints(const Skeleton& skeleton) {
   std::string missing;
   for (int j = 0; j < kStandardJointCount; ++j) {
     if (skeleton.name_map()[static_cast<std::size_t>(j)].trajectory_joint >= 0) continue;
@@ -129,6 +129,10 @@ JointTrajectories StandardJoints(const Skeleton& skeleton, const JointTrajectori
                 "the skeleton lacks bones of the standard skeleton: " + missing,
                 {skeleton.source().file_name});
   }
+}
+
+JointTrajectories StandardJoints(const Skeleton& skeleton, const JointTrajectories& all_joints) {
+  CheckStandardJoints(skeleton);
   JointTrajectories result{.rate_hz = all_joints.rate_hz, .joint_count = kStandardJointCount};
   const int frames = all_joints.frame_count();
   result.positions_cm.reserve(static_cast<std::size_t>(frames) * kStandardJointCount);

@@ -1,55 +1,21 @@
 #include "kinebase/motion/motion_editing.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
+#include "motion/sampling.h"
 
 namespace kinebase {
+
+using internal::PlaceOfSample;
+using internal::SampleCount;
+
 namespace {
 
 const Eigen::DiagonalMatrix<double, 3> kReflection(-1, 1, 1);
-
-// Where sample i of the new rate lies among the old frames.
-struct SamplePlace {
-  int before = 0;
-  int after = 0;
-  double share = 0;  // Of `after`.
-};
-
-// Sample times are i / new rate; a product that rounding leaves a hair off a frame is that frame,
-// so that going to half the rate picks every other frame exactly.
-SamplePlace PlaceOfSample(int sample, double old_rate_hz, double new_rate_hz, int frames) {
-  const double position = sample * old_rate_hz / new_rate_hz;
-  const double nearest = std::round(position);
-  constexpr double kSameFrame = 1e-9;
-  const double exact = std::abs(position - nearest) < kSameFrame ? nearest : position;
-  const int before = std::min(static_cast<int>(exact), frames - 1);
-  return {before, std::min(before + 1, frames - 1), exact - before};
-}
-
-int SampleCount(int frames, double old_rate_hz, double new_rate_hz) {
-  if (!(new_rate_hz > 0)) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("cannot resample to {} Hz: the rate must be positive", new_rate_hz));
-  }
-  if (!(old_rate_hz > 0)) {
-    throw Error(ErrorCode::kInvalidArgument, "cannot resample a motion without a rate");
-  }
-  if (frames == 0) return 0;
-  // The same care as in PlaceOfSample: 120 / 30 · 40 must not become 159.99…
-  const double samples = std::floor((frames - 1) * new_rate_hz / old_rate_hz + 1e-9) + 1;
-  if (!(samples <= std::numeric_limits<int>::max())) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("cannot resample {} frames from {} to {} Hz: too many frames", frames,
-                            old_rate_hz, new_rate_hz));
-  }
-  return static_cast<int>(samples);
-}
 
 // The name with left and right exchanged; empty if it names no side.
 std::string OtherSide(const std::string& name) {

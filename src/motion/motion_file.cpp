@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,64 +9,83 @@
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/kinematics.h"
+#include "kinebase/motion/marker_joints.h"
+#include "kinebase/motion/motion_editing.h"
+#include "motion/file_formats.h"
 
 namespace kinebase {
 namespace {
 
 constexpr double kUsualRateHz = 120;
 
-// A word or a number of a comment, and what stands before it.
-struct CommentPart {
-  std::string_view gap;
-  std::string_view text;
-  bool is_number = false;
+constexpr std::array kFormats = {
+    MotionFormat{"ASF/AMC", ".amc", "Acclaim motion with its skeleton in an ASF file",
+                 &internal::LoadAsfAmc, &internal::SaveAsfAmc},
+    MotionFormat{"C3D", ".c3d", "markers, analog channels and events of optical systems",
+                 &internal::LoadC3d, &internal::SaveC3d},
+    MotionFormat{"BVH", ".bvh", "skeleton and motion of many animation programs",
+                 &internal::LoadBvh, &internal::SaveBvh},
+    MotionFormat{"CSM", ".csm", "markers for Character Studio", &internal::LoadCsm,
+                 &internal::SaveCsm},
+    MotionFormat{"TRC", ".trc", "markers for OpenSim", &internal::LoadTrc, &internal::SaveTrc},
+    MotionFormat{"MOT", ".mot", "joint angles or analog channels for OpenSim", nullptr,
+                 &internal::SaveMot},
+    MotionFormat{"STO", ".sto", "orientations or analog channels for OpenSim", nullptr,
+                 &internal::SaveSto},
+    MotionFormat{"NPZ", ".npz", "arrays for NumPy", &internal::LoadNpz, &internal::SaveNpz},
+    MotionFormat{"MAT", ".mat", "skel and mot structures for MATLAB, as HDM05's tools have them",
+                 &internal::LoadMat, &internal::SaveMat},
+    MotionFormat{"GLB", ".glb", "glTF: skeleton with animation for viewers and engines", nullptr,
+                 &internal::SaveGlb},
+    MotionFormat{"CSV", ".csv", "a table of places", nullptr, &internal::SaveCsv},
 };
 
-std::vector<CommentPart> SplitComment(std::string_view comment) {
-  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const std::size_t size = comment.size();
-  std::vector<CommentPart> parts;
-  for (std::size_t end = 0; end < size;) {
-    std::size_t begin = end;
-    while (begin < size && !is_digit(comment[begin]) && !is_letter(comment[begin])) ++begin;
-    if (begin == size) break;
-    const std::string_view gap = comment.substr(end, begin - end);
-    const bool is_number = is_digit(comment[begin]);
-    end = begin + 1;
-    while (end < size && (is_number ? is_digit(comment[end]) : is_letter(comment[end]))) ++end;
-    parts.push_back({gap, comment.substr(begin, end - begin), is_number});
+// Extensions of the formats that can be read, or written.
+template <typename Function>
+std::string Extensions(Function MotionFormat::*can) {
+  std::string text;
+  for (const MotionFormat& format : kFormats) {
+    if (format.*can == nullptr) continue;
+    text.append(text.empty() ? "" : ", ").append(format.extension);
   }
-  return parts;
+  return text;
 }
 
-bool IsAnyOf(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::ranges::any_of(words,
-                             [&](std::string_view each) { return EqualsIgnoringCase(word, each); });
+Recording WithoutRecord(const Recording& recording) {
+  Recording copy{.path = recording.path,
+                 .format = recording.format,
+                 .skeleton_path = recording.skeleton_path,
+                 .name = recording.name,
+                 .units = recording.units,
+                 .up_axis = recording.up_axis};
+  copy.marker_set = recording.marker_set;
+  copy.joint_sources = recording.joint_sources;
+  copy.diagnostics = recording.diagnostics;
+  return copy;
 }
 
-// A rate in a comment that some writers leave: "# 60 fps", "#rate: 120".
-double RateInComments(const std::vector<std::string>& header) {
-  for (const auto& line : header) {
-    if (!line.starts_with('#')) continue;
-    const std::vector<CommentPart> parts = SplitComment(line);
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-      const CommentPart& before = parts[i - 1];
-      const CommentPart& part = parts[i];
-      const bool unit_follows =
-          before.is_number && Trim(part.gap).empty() && IsAnyOf(part.text, {"hz", "fps"});
-      const bool number_follows = part.is_number && IsAnyOf(Trim(part.gap), {"", ":", "="}) &&
-                                  IsAnyOf(before.text, {"rate", "framerate", "fps", "hz"});
-      if (!unit_follows && !number_follows) continue;
-      const double rate = ParseDouble(unit_follows ? before.text : part.text).value_or(0);
-      if (rate >= kSmallestRateHz && rate <= kLargestRateHz) return rate;
-    }
+MarkerJoints JointsFromMarkers(const Recording& recording, Diagnostics& diagnostics) {
+  const auto sets =
+      recording.marker_set ? std::span(recording.marker_set.get(), 1) : BuiltInMarkerSets();
+  return ApproximateJoints(recording.markers, sets, diagnostics);
+}
+
+template <typename Function>
+auto NamingTheFile(const Recording& recording, Function function) {
+  try {
+    return function();
+  } catch (const Error& error) {
+    if (!error.place().file.empty()) throw;
+    throw Error(error.code(), error.message(), {recording.path});
   }
-  return 0;
 }
 
-double ChooseRate(const AmcMotion& amc, const TakeName& name, const LoadOptions& options,
-                  Diagnostics& diagnostics) {
+}  // namespace
+
+namespace internal {
+
+double ChooseRate(const TakeName& name, const LoadOptions& options, Diagnostics& diagnostics) {
   if (options.source_rate_hz != 0) {
     if (options.source_rate_hz >= kSmallestRateHz && options.source_rate_hz <= kLargestRateHz) {
       return options.source_rate_hz;
@@ -76,7 +94,6 @@ double ChooseRate(const AmcMotion& amc, const TakeName& name, const LoadOptions&
                 fmt::format("a source rate of {:g} Hz; it must lie between {:g} and {:g} Hz",
                             options.source_rate_hz, kSmallestRateHz, kLargestRateHz));
   }
-  if (const double rate = RateInComments(amc.header); rate > 0) return rate;
   if (name.rate_hz > 0) {
     if (name.class_name.empty() && name.take.find('-') == std::string::npos) {
       diagnostics.push_back(
@@ -94,73 +111,33 @@ double ChooseRate(const AmcMotion& amc, const TakeName& name, const LoadOptions&
   return kUsualRateHz;
 }
 
-LoadedMotion LoadAsfAmc(const std::filesystem::path& path, const LoadOptions& options) {
-  LoadedMotion loaded{.path = path, .format = "ASF/AMC", .name = ParseTakeName(path)};
-  const AmcMotion amc = ReadAmc(path, {.strict = options.strict});
-  loaded.skeleton_path = options.skeleton.empty() ? FindSkeleton(path) : options.skeleton;
-  const AsfSkeleton asf = ReadAsf(loaded.skeleton_path);
-  Diagnostics from_skeleton = asf.diagnostics;
-  const AsfBuildOptions build{.length_reading =
-                                  ChooseLengthReading(asf, options.length_reading, from_skeleton)};
-  loaded.units = build.length_reading == LengthReading::kDivideToInches
-                     ? fmt::format("inch / {:g}", asf.length_unit.value_or(1))
-                     : fmt::format("cm / {:g}", 1 / asf.length_unit.value_or(1));
-  std::shared_ptr<const Skeleton> skeleton;
-  try {
-    skeleton = BuildSkeleton(asf, build, from_skeleton);
-  } catch (const Error& error) {
-    throw Error(error.code(), error.message(), {loaded.skeleton_path});
-  }
-  for (Diagnostic& diagnostic : from_skeleton) {
-    // Lines are those of the motion file; the skeleton's are named in the text.
-    const std::string place =
-        Place{loaded.skeleton_path.filename(), std::exchange(diagnostic.line, 0)}.ToString();
-    diagnostic.message = place + ": " + diagnostic.message;
-    loaded.diagnostics.push_back(std::move(diagnostic));
-  }
-  loaded.diagnostics.insert(loaded.diagnostics.end(), amc.diagnostics.begin(),
-                            amc.diagnostics.end());
-  const double rate_hz = ChooseRate(amc, loaded.name, options, loaded.diagnostics);
-  try {
-    loaded.motion = BuildMotion(amc, asf, std::move(skeleton), rate_hz, build, loaded.diagnostics);
-  } catch (const Error& error) {
-    throw Error(error.code(), error.message(), {path, error.place().line});
-  }
-  return loaded;
+MarkerCloud PointsOf(const Recording& recording, Diagnostics& diagnostics) {
+  if (!recording.has_skeleton()) return recording.markers;
+  const Motion& motion = recording.motion;
+  MarkerCloud points{.rate_hz = motion.rate_hz,
+                     .frame_count = motion.frame_count,
+                     .first_frame = motion.first_frame};
+  for (const Joint& joint : motion.skeleton->joints()) points.labels.push_back(joint.bone_name);
+  points.positions_cm = ForwardKinematics(motion).positions_cm;
+  points.states.assign(points.positions_cm.size(), MarkerState::kMeasured);
+  diagnostics.push_back(
+      {Severity::kInfo,
+       fmt::format("the {} joints are written as points; bones, rotations and limits do not fit",
+                   points.labels.size())});
+  return points;
 }
 
-void SaveAsfAmc(const Motion& motion, const std::filesystem::path& path, Overwrite overwrite,
-                Diagnostics& diagnostics) {
-  const std::filesystem::path skeleton = std::filesystem::path(path).replace_extension(".asf");
-  CheckWritable(path, overwrite);
-  CheckWritable(skeleton, overwrite);
-  const std::string asf_text = FormatAsf(ToAsf(*motion.skeleton));
-  const std::string amc_text = FormatAmc(ToAmc(motion, diagnostics));
-  WriteFile(skeleton, asf_text, overwrite);
-  WriteFile(path, amc_text, overwrite);
-}
-
-constexpr std::array kFormats = {
-    MotionFormat{"ASF/AMC", ".amc", "Acclaim motion with its skeleton in an ASF file", &LoadAsfAmc,
-                 &SaveAsfAmc},
-};
-
-std::string KnownExtensions() {
-  std::string text;
-  for (const MotionFormat& format : kFormats) {
-    text.append(text.empty() ? "" : ", ").append(format.extension);
-  }
-  return text;
-}
-
-[[noreturn]] void ThrowUnknownFormat(const std::filesystem::path& path) {
-  throw Error(ErrorCode::kInvalidArgument,
-              fmt::format("unknown motion format {}; known: {}", Quoted(path.extension().string()),
-                          KnownExtensions()),
+void RequireSkeleton(const Recording& recording, std::string_view format,
+                     const std::filesystem::path& path) {
+  if (recording.has_skeleton()) return;
+  throw Error(ErrorCode::kMismatch,
+              fmt::format("{} needs a skeleton and {} holds markers only; formats for markers are "
+                          "C3D, CSM, TRC, NPZ and CSV",
+                          format, Quoted(recording.path.filename().string())),
               {path});
 }
 
-}  // namespace
+}  // namespace internal
 
 std::span<const MotionFormat> MotionFormats() { return kFormats; }
 
@@ -172,25 +149,82 @@ const MotionFormat* FindMotionFormat(const std::filesystem::path& path) {
   return nullptr;
 }
 
-LoadedMotion LoadMotion(const std::filesystem::path& path, const LoadOptions& options) {
+Recording LoadRecording(const std::filesystem::path& path, const LoadOptions& options) {
   std::error_code ignored;  // A name that is too long, say: there is no such file either.
   if (!std::filesystem::exists(path, ignored)) {
     throw Error(ErrorCode::kNotFound, "does not exist", {path});
   }
   const MotionFormat* format = FindMotionFormat(path);
-  if (format == nullptr) ThrowUnknownFormat(path);
-  LoadedMotion loaded = format->load(path, options);
-  if (loaded.motion.skeleton && loaded.motion.frame_count == 0) {
+  if (format == nullptr || format->load == nullptr) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("{} files cannot be read as motion; those that can: {}",
+                            Quoted(path.extension().string()), Extensions(&MotionFormat::load)),
+                {path});
+  }
+  Recording recording = format->load(path, options);
+  if (recording.frame_count() == 0) {
     throw Error(ErrorCode::kMalformedFile, "has no frames", {path});
   }
-  return loaded;
+  if (!options.marker_set.empty()) {
+    recording.marker_set = std::make_shared<MarkerSet>(ReadMarkerSet(options.marker_set));
+  }
+  return recording;
 }
 
-void SaveMotion(const Motion& motion, const std::filesystem::path& path, Overwrite overwrite,
-                Diagnostics& diagnostics) {
+void SaveRecording(const Recording& recording, const std::filesystem::path& path,
+                   const SaveOptions& options, Diagnostics& diagnostics) {
   const MotionFormat* format = FindMotionFormat(path);
-  if (format == nullptr || format->save == nullptr) ThrowUnknownFormat(path);
-  format->save(motion, path, overwrite, diagnostics);
+  if (format == nullptr || format->save == nullptr) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("{} files cannot be written; those that can: {}",
+                            Quoted(path.extension().string()), Extensions(&MotionFormat::save)),
+                {path});
+  }
+  format->save(recording, path, options, diagnostics);
+}
+
+JointTrajectories StandardJoints(const Recording& recording, Diagnostics& diagnostics) {
+  return NamingTheFile(recording, [&] {
+    return recording.has_skeleton() ? StandardJoints(recording.motion)
+                                    : JointsFromMarkers(recording, diagnostics).joints;
+  });
+}
+
+std::vector<JointSource> FindStandardJoints(const Recording& recording, Diagnostics& diagnostics) {
+  if (!recording.joint_sources.empty()) return recording.joint_sources;
+  return NamingTheFile(recording, [&] {
+    if (!recording.has_skeleton()) return JointsFromMarkers(recording, diagnostics).sources;
+    const Skeleton& skeleton = *recording.motion.skeleton;
+    CheckStandardJoints(skeleton);
+    std::vector<JointSource> sources;
+    for (int j = 0; j < kStandardJointCount; ++j) {
+      const int joint = skeleton.name_map()[static_cast<std::size_t>(j)].trajectory_joint;
+      sources.push_back({static_cast<StandardJoint>(j),
+                         skeleton.joints()[static_cast<std::size_t>(joint)].bone_name,
+                         JointMatch::kTable, 1});
+    }
+    return sources;
+  });
+}
+
+Recording CutRecording(const Recording& recording, int first, int last) {
+  Recording cut = WithoutRecord(recording);
+  if (recording.has_skeleton()) {
+    cut.motion = CutMotion(recording.motion, first, last);
+  } else {
+    cut.markers = CutMarkers(recording.markers, first, last);
+  }
+  return cut;
+}
+
+Recording ResampleRecording(const Recording& recording, double rate_hz) {
+  Recording result = WithoutRecord(recording);
+  if (recording.has_skeleton()) {
+    result.motion = ResampleMotion(recording.motion, rate_hz);
+  } else {
+    result.markers = ResampleMarkers(recording.markers, rate_hz);
+  }
+  return result;
 }
 
 }  // namespace kinebase

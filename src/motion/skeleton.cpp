@@ -39,6 +39,16 @@ void CheckJoint(const std::vector<Joint>& joints, int index) {
   }
 }
 
+void CheckNameMap(const Skeleton::NameMap& name_map, int joint_count) {
+  const auto fits = [&](int joint) { return joint >= -1 && joint < joint_count; };
+  for (const NameMapEntry& entry : name_map) {
+    if (fits(entry.rotation_joint) && fits(entry.trajectory_joint)) continue;
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("a name map with joints {} and {}; the skeleton has {}",
+                            entry.rotation_joint, entry.trajectory_joint, joint_count));
+  }
+}
+
 }  // namespace
 
 std::optional<EulerOrder> ParseEulerOrder(std::string_view text) {
@@ -75,7 +85,8 @@ Eigen::Vector3d QuaternionToEuler(const Eigen::Quaterniond& rotation, EulerOrder
 
 Skeleton::Skeleton(std::vector<Joint> joints, SkeletonSource source,
                    const Eigen::Vector3d& root_position_cm,
-                   const Eigen::Vector3d& root_orientation_rad)
+                   const Eigen::Vector3d& root_orientation_rad,
+                   const std::optional<NameMap>& name_map)
     : joints_(std::move(joints)),
       source_(std::move(source)),
       root_position_cm_(root_position_cm),
@@ -106,7 +117,8 @@ Skeleton::Skeleton(std::vector<Joint> joints, SkeletonSource source,
     }
     chains_.push_back(std::move(chain));
   }
-  name_map_ = internal::BuildNameMap(joints_);
+  if (name_map) CheckNameMap(*name_map, joint_count());
+  name_map_ = name_map ? *name_map : internal::BuildNameMap(joints_);
 }
 
 std::optional<int> Skeleton::FindBone(std::string_view bone_name) const {

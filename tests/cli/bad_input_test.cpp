@@ -93,7 +93,7 @@ TEST(BadInput, NoFrames) {
 TEST(BadInput, UnknownFormat) {
   const SyntheticLibrary library;
   const std::string file = library.BadMotion("some text", "notes.txt");
-  ExpectEveryCommandRefuses(library, file, {file, "known: .amc"});
+  ExpectEveryCommandRefuses(library, file, {file, ".amc", ".c3d", ".mat"});
 }
 
 TEST(BadInput, CutOffLastFrameIsDroppedWithAWarning) {

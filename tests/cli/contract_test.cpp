@@ -19,11 +19,25 @@ using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::vector<std::string> kInfoFields = {
-    "path:string",    "format:string",     "frames:integer",         "first_frame:integer",
-    "rate_hz:number", "duration_s:number", "joints:integer",         "markers:integer",
-    "units:string",   "up_axis:string",    "bounding_box_cm:object", "actor:string",
-    "class:string",   "take:string",       "skeleton:string",        "diagnostics:array"};
+const std::vector<std::string> kInfoFields = {"path:string",
+                                              "format:string",
+                                              "frames:integer",
+                                              "first_frame:integer",
+                                              "rate_hz:number",
+                                              "duration_s:number",
+                                              "joints:integer",
+                                              "markers:integer",
+                                              "units:string",
+                                              "up_axis:string",
+                                              "bounding_box_cm:object",
+                                              "actor:string",
+                                              "class:string",
+                                              "take:string",
+                                              "skeleton:string",
+                                              "contents:object",
+                                              "standard_joints:array",
+                                              "no_standard_joints:null",
+                                              "diagnostics:array"};
 
 TEST(InfoJson, HasTheDocumentedFields) {
   const SyntheticLibrary library;

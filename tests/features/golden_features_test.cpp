@@ -46,7 +46,7 @@ TEST(GoldenClips, HaveTheSameStandardJoints) {
   ASSERT_EQ(clips.size(), 11);
   for (const GoldenClip& clip : clips) {
     SCOPED_TRACE(clip.name);
-    const JointTrajectories joints = StandardJoints(LoadMotion(clip.amc).motion);
+    const JointTrajectories joints = StandardJoints(LoadRecording(clip.amc).motion);
     EXPECT_EQ(joints.frame_count(), clip.frames120);
     const CsvTable golden =
         test::ReadCsv(test::TestData("golden/clips") / (clip.name + ".joints.csv"));
@@ -75,7 +75,7 @@ TEST_P(GoldenFeatures, AreEqualBitForBit) {
   for (const GoldenClip& clip : GoldenClips()) {
     SCOPED_TRACE(clip.name);
     const FeatureMatrix matrix =
-        ExtractFeatures(StandardJoints(LoadMotion(clip.amc).motion), features);
+        ExtractFeatures(StandardJoints(LoadRecording(clip.amc).motion), features);
     ASSERT_EQ(matrix.column_count(), clip.frames30);
     const CsvTable golden = test::ReadCsv(test::TestData("golden/clips") /
                                           (clip.name + ".features_" + GetParam() + ".csv"));

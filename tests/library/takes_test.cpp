@@ -130,13 +130,13 @@ TEST(TakeStretch, TakesAnExistingFileWholeWhateverItsName) {
 }
 
 TEST(CutToStretch, CountsTheFirstStoredFrameAsOne) {
-  Motion motion = Smooth(1, 10);
-  motion.first_frame = 100;
-  const Motion cut = CutToStretch(motion, {"t.amc", 3, 5});
-  EXPECT_EQ(cut.frame_count, 3);
-  EXPECT_EQ(cut.first_frame, 102);
-  EXPECT_EQ(CutToStretch(motion, {"t.amc"}).frame_count, 10);
-  const Error error = test::ErrorOf([&] { (void)CutToStretch(motion, {"t.amc", 3, 11}); });
+  Recording take{.motion = Smooth(1, 10)};
+  take.motion.first_frame = 100;
+  const Recording cut = CutToStretch(take, {"t.amc", 3, 5});
+  EXPECT_EQ(cut.frame_count(), 3);
+  EXPECT_EQ(cut.first_frame(), 102);
+  EXPECT_EQ(CutToStretch(take, {"t.amc"}).frame_count(), 10);
+  const Error error = test::ErrorOf([&] { (void)CutToStretch(take, {"t.amc", 3, 11}); });
   EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
   EXPECT_STREQ(error.what(), "t.amc: frames 3 to 11 are asked for; it has 1 to 10");
 }
@@ -152,7 +152,7 @@ TEST(LoadTakeFeatures, AreThoseOfTheStretch) {
   EXPECT_EQ(whole.rate_hz, 120);
   EXPECT_EQ(whole.frame_count, 50);
   EXPECT_EQ(whole.features.column_count(), 13);
-  const Motion motion = LoadMotion(path).motion;
+  const Motion motion = LoadRecording(path).motion;
   EXPECT_EQ(whole.features.columns, ExtractFeatures(StandardJoints(motion), set).columns);
   const TakeFeatures part = LoadTakeFeatures({path, 11, 30}, set, 30, {});
   EXPECT_EQ(part.frame_count, 20);

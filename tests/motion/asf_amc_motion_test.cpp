@@ -59,7 +59,7 @@ TEST(AsfAmcMotion, ComesBackWithEveryRealJointInItsPlace) {
         "data/hdm05/cut_amc/squat1Reps/HDM_dg_squat1Reps_025_120.amc", "data/cmu/49/49_18.amc",
         "data/quirks/asfamc/backflip.amc", "data/cmu/05/05_02.amc"}) {
     SCOPED_TRACE(file);
-    const Motion motion = LoadMotion(test::TestData(file)).motion;
+    const Motion motion = LoadRecording(test::TestData(file)).motion;
     Diagnostics diagnostics;
     const Motion again = ThereAndBack(motion, diagnostics);
     EXPECT_THAT(diagnostics, IsEmpty());
@@ -175,9 +175,9 @@ TEST(LengthReading, IsHumanForEveryRealSkeleton) {
 
 TEST(BuildMotion, ReadsAFileWhoseJointsWereAllForcedToThreeDofs) {
   KINEBASE_NEEDS_TEST_DATA();
-  const auto original = LoadMotion(test::TestData("data/cmu/131/131_04.amc"));
+  const auto original = LoadRecording(test::TestData("data/cmu/131/131_04.amc"));
   const auto forced =
-      LoadMotion(test::TestData("data/quirks/asfamc/131_04_FORCE-ALL-JOINTS-BE-3DOF.amc"),
+      LoadRecording(test::TestData("data/quirks/asfamc/131_04_FORCE-ALL-JOINTS-BE-3DOF.amc"),
                  {.skeleton = original.skeleton_path});
   EXPECT_LE(test::LargestDistance(ForwardKinematics(CutMotion(forced.motion, 0, 0)),
                                   ForwardKinematics(CutMotion(original.motion, 0, 0))),

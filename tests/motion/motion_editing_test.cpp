@@ -139,7 +139,7 @@ RC_GTEST_PROP(MirrorMotion, MirrorsEveryJointOfASymmetricFigure, ()) {
 
 TEST(MirrorMotion, MirrorsARealFigureUpToTheDifferencesOfItsSides) {
   KINEBASE_NEEDS_TEST_DATA();
-  const Motion motion = LoadMotion(test::TestData("data/hdm05/cut_amc/throwBasketball/"
+  const Motion motion = LoadRecording(test::TestData("data/hdm05/cut_amc/throwBasketball/"
                                                   "HDM_bd_throwBasketball_001_120.amc"))
                             .motion;
   const Skeleton& skeleton = *motion.skeleton;

@@ -120,10 +120,10 @@ struct Take {
 double RateOf(const char* name, std::string_view header, double source_rate_hz = 0) {
   Take take(name, header);
   take.options.source_rate_hz = source_rate_hz;
-  return LoadMotion(take.path, take.options).motion.rate_hz;
+  return LoadRecording(take.path, take.options).motion.rate_hz;
 }
 
-TEST(LoadMotion, TakesTheRateFromOptionCommentNameOrDefault) {
+TEST(LoadRecording, TakesTheRateFromOptionCommentNameOrDefault) {
   EXPECT_EQ(RateOf("HDM_tr_jump_001_60.amc", ""), 60);
   EXPECT_EQ(RateOf("05_01.amc", ""), 120);
   EXPECT_EQ(RateOf("jump.amc", ""), 120);
@@ -135,21 +135,21 @@ TEST(LoadMotion, TakesTheRateFromOptionCommentNameOrDefault) {
   EXPECT_EQ(RateOf("jump.amc", "# rate=240\n", 25), 25);
 }
 
-TEST(LoadMotion, RefusesRatesThatNoRecordingHas) {
+TEST(LoadRecording, RefusesRatesThatNoRecordingHas) {
   for (const double rate_hz : {1e-3, -30.0, 1e300}) {
     EXPECT_EQ(test::ErrorOf([&] { (void)RateOf("jump.amc", "", rate_hz); }).code(),
               ErrorCode::kInvalidArgument);
   }
 }
 
-TEST(LoadMotion, DoesNotBelieveEveryRateOfAComment) {
+TEST(LoadRecording, DoesNotBelieveEveryRateOfAComment) {
   for (const char* comment : {"# 0 fps\n", "# 0.0000001 fps\n", "# 99999999999999999999 hz\n",
                               "# separate 30 people\n", "# rate: unknown\n", ":rate 30\n"}) {
     EXPECT_EQ(RateOf("jump.amc", comment), 120) << comment;
   }
 }
 
-TEST(LoadMotion, FindsTheRateInALongComment) {
+TEST(LoadRecording, FindsTheRateInALongComment) {
   for (const char* filler : {" ", "x", "7", "fps ", "rate:"}) {
     std::string comment = "# ";
     for (int i = 0; i < 50'000; ++i) comment += filler;
@@ -157,18 +157,18 @@ TEST(LoadMotion, FindsTheRateInALongComment) {
   }
 }
 
-TEST(LoadMotion, SaysWhenTheRateIsAGuess) {
+TEST(LoadRecording, SaysWhenTheRateIsAGuess) {
   const Take guess("jump.amc", "");
-  const auto guessed = LoadMotion(guess.path, guess.options).diagnostics;
+  const auto guessed = LoadRecording(guess.path, guess.options).diagnostics;
   ASSERT_EQ(guessed.size(), 2);  // The other: bones without values.
   EXPECT_THAT(guessed[0].message + guessed[1].message, HasSubstr("--source-rate"));
   const Take named("HDM_tr_jump_001_120.amc", "");
-  EXPECT_EQ(LoadMotion(named.path, named.options).diagnostics.size(), 1);
+  EXPECT_EQ(LoadRecording(named.path, named.options).diagnostics.size(), 1);
 }
 
-TEST(LoadMotion, SaysWhatItRead) {
+TEST(LoadRecording, SaysWhatItRead) {
   const Take take("HDM_tr_jump_001_120.amc", ":DEGREES\n", "7\nroot 0 1 0 0 0 0\n");
-  const LoadedMotion loaded = LoadMotion(take.path, take.options);
+  const Recording loaded = LoadRecording(take.path, take.options);
   EXPECT_EQ(loaded.format, "ASF/AMC");
   EXPECT_EQ(loaded.skeleton_path, take.options.skeleton);
   EXPECT_EQ(loaded.name.class_name, "jump");
@@ -178,35 +178,35 @@ TEST(LoadMotion, SaysWhatItRead) {
   EXPECT_EQ(loaded.motion.frame_count, 1);
 }
 
-TEST(LoadMotion, RefusesACutOffFileWhenStrict) {
+TEST(LoadRecording, RefusesACutOffFileWhenStrict) {
   Take take("jump.amc", "", "1\nroot 0 0 0 0 0 0\n2\nroot 0 0");
-  EXPECT_EQ(LoadMotion(take.path, take.options).motion.frame_count, 1);
+  EXPECT_EQ(LoadRecording(take.path, take.options).motion.frame_count, 1);
   take.options.strict = true;
-  EXPECT_EQ(test::ErrorOf([&] { (void)LoadMotion(take.path, take.options); }).code(),
+  EXPECT_EQ(test::ErrorOf([&] { (void)LoadRecording(take.path, take.options); }).code(),
             ErrorCode::kMalformedFile);
 }
 
-TEST(LoadMotion, NamesTheFileThatIsToBlame) {
+TEST(LoadRecording, NamesTheFileThatIsToBlame) {
   const Take bad_motion("jump.amc", "", "1\nroot 0\n");
   const Error motion =
-      test::ErrorOf([&] { (void)LoadMotion(bad_motion.path, bad_motion.options); });
+      test::ErrorOf([&] { (void)LoadRecording(bad_motion.path, bad_motion.options); });
   EXPECT_EQ(motion.place().file, bad_motion.path);
   EXPECT_EQ(motion.place().line, 2);
   const Take take("jump.amc", "");
   test::WriteText(take.options.skeleton, "nothing");
-  const Error skeleton = test::ErrorOf([&] { (void)LoadMotion(take.path, take.options); });
+  const Error skeleton = test::ErrorOf([&] { (void)LoadRecording(take.path, take.options); });
   EXPECT_EQ(skeleton.place().file, take.options.skeleton);
   EXPECT_EQ(skeleton.place().line, 1);
 }
 
-TEST(LoadMotion, RefusesWhatItCannotRead) {
+TEST(LoadRecording, RefusesWhatItCannotRead) {
   const test::TemporaryFolder folder;
   test::WriteText(folder.path() / "take.xyz", "x");
   test::WriteText(folder.path() / "alone.amc", kFrames);
   fs::create_directory(folder.path() / "folder.amc");
   fs::create_symlink("loop.amc", folder.path() / "loop.amc");
   const auto code = [&](const fs::path& path) {
-    return test::ErrorOf([&] { (void)LoadMotion(path); }).code();
+    return test::ErrorOf([&] { (void)LoadRecording(path); }).code();
   };
   EXPECT_EQ(code(folder.path() / "none.amc"), ErrorCode::kNotFound);
   EXPECT_EQ(code(""), ErrorCode::kNotFound);
@@ -217,32 +217,53 @@ TEST(LoadMotion, RefusesWhatItCannotRead) {
   EXPECT_EQ(code(std::string(5000, 'a') + ".amc"), ErrorCode::kNotFound);
 }
 
-TEST(SaveMotion, WritesWhatLoadMotionReads) {
+TEST(SaveRecording, WritesWhatLoadRecordingReads) {
   const test::TemporaryFolder folder;
-  const Motion motion = test::SmoothMotion(test::FigureSkeleton(), 3, 12, 120);
+  const Recording recording{.motion = test::SmoothMotion(test::FigureSkeleton(), 3, 12, 120)};
   Diagnostics diagnostics;
   const fs::path path = folder.path() / "new" / "HDM_xx_made_001_120.amc";
-  SaveMotion(motion, path, Overwrite::kNo, diagnostics);
+  SaveRecording(recording, path, {}, diagnostics);
   EXPECT_THAT(diagnostics, IsEmpty());
-  const LoadedMotion loaded = LoadMotion(path, {.strict = true});
-  EXPECT_LE(test::LargestDistance(ForwardKinematics(loaded.motion), ForwardKinematics(motion)),
-            1e-9);
+  const Recording loaded = LoadRecording(path, {.strict = true});
+  EXPECT_LE(
+      test::LargestDistance(ForwardKinematics(loaded.motion), ForwardKinematics(recording.motion)),
+      1e-9);
   EXPECT_EQ(loaded.skeleton_path, folder.path() / "new" / "HDM_xx_made_001_120.asf");
-  EXPECT_EQ(test::ErrorOf([&] { SaveMotion(motion, path, Overwrite::kNo, diagnostics); }).code(),
+  EXPECT_EQ(test::ErrorOf([&] { SaveRecording(recording, path, {}, diagnostics); }).code(),
             ErrorCode::kAlreadyExists);
-  SaveMotion(motion, path, Overwrite::kYes, diagnostics);
+  SaveRecording(recording, path, {.overwrite = Overwrite::kYes}, diagnostics);
   EXPECT_EQ(test::ErrorOf([&] {
-              SaveMotion(motion, folder.path() / "a.xyz", Overwrite::kNo, diagnostics);
+              SaveRecording(recording, folder.path() / "a.xyz", {}, diagnostics);
             }).code(),
             ErrorCode::kInvalidArgument);
 }
 
-TEST(SaveMotion, KeepsTheRate) {
+TEST(SaveRecording, KeepsTheRate) {
   const test::TemporaryFolder folder;
-  const Motion motion = test::SmoothMotion(test::FigureSkeleton(), 3, 12, 59.94);
+  const Recording recording{.motion = test::SmoothMotion(test::FigureSkeleton(), 3, 12, 59.94)};
   Diagnostics diagnostics;
-  SaveMotion(motion, folder.path() / "made.amc", Overwrite::kNo, diagnostics);
-  EXPECT_EQ(LoadMotion(folder.path() / "made.amc").motion.rate_hz, 59.94);
+  SaveRecording(recording, folder.path() / "made.amc", {}, diagnostics);
+  EXPECT_EQ(LoadRecording(folder.path() / "made.amc").motion.rate_hz, 59.94);
+}
+
+TEST(SaveRecording, KeepsTheRateOfARecordWhoseNewNameDoesNotTellIt) {
+  const test::TemporaryFolder folder;
+  const Recording recording{.motion = test::SmoothMotion(test::FigureSkeleton(), 3, 12, 60)};
+  Diagnostics diagnostics;
+  const AcclaimRecord record{.asf = ToAsf(*recording.motion.skeleton),
+                             .amc = {ToAmc(recording.motion, diagnostics)}};
+  test::WriteText(folder.path() / "a_b_60.asf", FormatAsf(record.asf));
+  AmcMotion amc = record.amc;
+  amc.header = {":DEGREES"};
+  test::WriteText(folder.path() / "HDM_a_b_1_60.amc", FormatAmc(amc));
+  const Recording named =
+      LoadRecording(folder.path() / "HDM_a_b_1_60.amc", {.skeleton = folder.path() / "a_b_60.asf"});
+  ASSERT_EQ(named.rate_hz(), 60);
+  SaveRecording(named, folder.path() / "other.amc", {}, diagnostics);
+  EXPECT_EQ(LoadRecording(folder.path() / "other.amc").rate_hz(), 60);
+  SaveRecording(named, folder.path() / "HDM_a_b_2_60.amc", {}, diagnostics);
+  EXPECT_EQ(test::ReadText(folder.path() / "HDM_a_b_2_60.amc"),
+            test::ReadText(folder.path() / "HDM_a_b_1_60.amc"));
 }
 
 TEST(MotionFormats, AreFoundByExtensionInAnyCase) {

@@ -21,7 +21,7 @@ constexpr double kCentimetresPerInch = 2.54;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 struct Clip {
-  LoadedMotion loaded;
+  Recording loaded;
   test::MatOracle oracle;
 };
 
@@ -34,7 +34,7 @@ void ForEachClip(Check check) {
     const std::string amc = file.stem().string();
     SCOPED_TRACE(amc);
     const TakeName name = ParseTakeName(amc);
-    check(Clip{LoadMotion(test::TestData("data/hdm05/cut_amc") / name.class_name / amc),
+    check(Clip{LoadRecording(test::TestData("data/hdm05/cut_amc") / name.class_name / amc),
                test::ReadMatOracle(file)});
   }
 }

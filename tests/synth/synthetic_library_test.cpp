@@ -58,7 +58,7 @@ TEST(SyntheticLibrary, ReadsBackWithTheSameJoints) {
       const fs::path file =
           folder.path() / "cut_amc" / name /
           ("SYN_" + actor.name + "_" + name + "_00" + std::to_string(number + 1) + "_120.amc");
-      const LoadedMotion loaded = LoadMotion(file);
+      const Recording loaded = LoadRecording(file);
       EXPECT_EQ(loaded.name.actor, actor.name);
       EXPECT_EQ(loaded.name.class_name, name);
       EXPECT_EQ(loaded.motion.rate_hz, 120);
@@ -70,7 +70,7 @@ TEST(SyntheticLibrary, ReadsBackWithTheSameJoints) {
     const auto take = MakeSyntheticTake(actor, options.clips_per_take, 0, options.seed);
     ExpectSameJoints(
         take.motion,
-        LoadMotion(folder.path() / "takes" / ("SYN_" + actor.name + "_01-01_01_120.amc")).motion);
+        LoadRecording(folder.path() / "takes" / ("SYN_" + actor.name + "_01-01_01_120.amc")).motion);
   }
 }
 
@@ -102,7 +102,7 @@ TEST(SyntheticLibrary, ListsExactlyTheClipsThatItWrote) {
     listed.insert(row[clips.Column("file")]);
     const fs::path file =
         folder.path() / "cut_amc" / row[clips.Column("class")] / row[clips.Column("file")];
-    const int count = LoadMotion(file).motion.frame_count;
+    const int count = LoadRecording(file).motion.frame_count;
     EXPECT_EQ(row[clips.Column("frames")], std::to_string(count));
     EXPECT_EQ(row[clips.Column("take_first_frame")], "1");
     EXPECT_EQ(row[clips.Column("take_last_frame")], std::to_string(count));
@@ -114,7 +114,7 @@ TEST(SyntheticLibrary, ListsExactlyTheClipsThatItWrote) {
   }
   EXPECT_EQ(listed, written);
   for (const fs::path& file : FilesBelow(folder.path() / "takes", ".amc")) {
-    frames += LoadMotion(file).motion.frame_count;
+    frames += LoadRecording(file).motion.frame_count;
   }
   EXPECT_EQ(report.frames, frames);
 }

@@ -32,9 +32,12 @@ struct TakeStretch {
 // Errors  InvalidArgument: last before first, or 0.
 [[nodiscard]] TakeStretch ParseTakeStretch(const std::string& text);
 
-// The frames of a motion that a stretch names; the motion itself if it names none.
+// The frames of a recording that a stretch names; the recording itself if it names none.
 // Errors  InvalidArgument for a stretch that leaves the take, naming its frames.
-[[nodiscard]] Motion CutToStretch(const Motion& motion, const TakeStretch& stretch);
+[[nodiscard]] Recording CutToStretch(const Recording& recording, const TakeStretch& stretch);
+
+// LoadRecording and CutToStretch.
+[[nodiscard]] Recording LoadStretch(const TakeStretch& stretch, const LoadOptions& options);
 
 // A take that was read, with its features.
 struct TakeFeatures {
@@ -48,7 +51,7 @@ struct TakeFeatures {
 };
 
 // Reads one take, or a stretch of it, and extracts its features.
-// Errors  Those of LoadMotion; InvalidArgument for a stretch that leaves the take.
+// Errors  Those of LoadRecording and StandardJoints; InvalidArgument for a stretch that leaves the take.
 [[nodiscard]] TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
                                             double rate_hz, const LoadOptions& options);
 

@@ -23,6 +23,9 @@ void ForwardKinematics(const Motion& motion, int frame, Eigen::Vector3d* positio
 // The neutral pose: all rotations the identity, the root at the origin. [joint]
 [[nodiscard]] std::vector<Eigen::Vector3d> NeutralPose(const Skeleton& skeleton);
 
+// Errors  Mismatch, naming the bones of the standard skeleton that this one lacks.
+void CheckStandardJoints(const Skeleton& skeleton);
+
 // The 24 standard joints in every frame.
 //
 // Errors  Mismatch, naming the bones that the skeleton lacks.

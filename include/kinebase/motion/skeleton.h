@@ -1,6 +1,7 @@
 // The bones of one performer: immutable, checked once, shared by all motions that use it.
 //
-// Read motion/motion.h next. Built from a file's record by motion/asf_amc_motion.h.
+// Read motion/motion.h next. Built from a file's record by motion/asf_amc_motion.h and
+// motion/bvh_motion.h.
 // Source: Documentation Mocap Database HDM05 (CG-2007-2), Sect. 3.1 (`skel`), 4.1 and 4.2.
 #pragma once
 
@@ -74,14 +75,19 @@ struct SkeletonSource {
 // A tree of joints in depth-first order, root first.
 class Skeleton {
  public:
+  using NameMap = std::array<NameMapEntry, kStandardJointCount>;
+
   // Checks and completes. `root_orientation` turns the whole figure, from the left of the root's
-  // own rotation; `root_position_cm` is added to its translation.
+  // own rotation; `root_position_cm` is added to its translation. Without `name_map` the standard
+  // joints are found by the names that ASF files have.
   //
   // Errors  InvalidArgument: no joint, a parent that does not come before its child, a second
-  //         root, two bones of one name, limits that are neither none nor one for each DOF.
+  //         root, two bones of one name, limits that are neither none nor one for each DOF, a name
+  //         map that points nowhere.
   explicit Skeleton(std::vector<Joint> joints, SkeletonSource source = {},
                     const Eigen::Vector3d& root_position_cm = Eigen::Vector3d::Zero(),
-                    const Eigen::Vector3d& root_orientation_rad = Eigen::Vector3d::Zero());
+                    const Eigen::Vector3d& root_orientation_rad = Eigen::Vector3d::Zero(),
+                    const std::optional<NameMap>& name_map = std::nullopt);
 
   [[nodiscard]] const std::vector<Joint>& joints() const { return joints_; }
   [[nodiscard]] int joint_count() const { return static_cast<int>(joints_.size()); }
@@ -94,9 +100,7 @@ class Skeleton {
   [[nodiscard]] const std::vector<int>& unanimated() const { return unanimated_; }
 
   // Where each standard joint is found here; -1 where it has no rotation, or the bone is missing.
-  [[nodiscard]] const std::array<NameMapEntry, kStandardJointCount>& name_map() const {
-    return name_map_;
-  }
+  [[nodiscard]] const NameMap& name_map() const { return name_map_; }
 
   [[nodiscard]] std::optional<int> FindBone(std::string_view bone_name) const;  // Or another case.
   [[nodiscard]] const Eigen::Quaterniond& axis(int joint) const { return axes_[joint]; }
@@ -114,7 +118,7 @@ class Skeleton {
   std::vector<std::vector<int>> chains_;
   std::vector<int> animated_;
   std::vector<int> unanimated_;
-  std::array<NameMapEntry, kStandardJointCount> name_map_{};
+  NameMap name_map_{};
   SkeletonSource source_;
   Eigen::Vector3d root_position_cm_;
   Eigen::Vector3d root_orientation_rad_;

@@ -1,0 +1,100 @@
+// kinebase convert: one motion file into another format.
+
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "fmt/format.h"
+#include "kinebase/core/text_scanner.h"
+#include "kinebase/library/takes.h"
+
+namespace kinebase::cli {
+namespace {
+
+struct ConvertOptions {
+  CommonOptions common;
+  std::string input;
+  std::filesystem::path output;
+  double rate_hz = 0;
+  std::string up;
+  std::string units;
+};
+
+Json ToJson(const Diagnostics& diagnostics) {
+  Json list = Json::array();
+  for (const Diagnostic& diagnostic : diagnostics) {
+    list.push_back({{"severity", ToString(diagnostic.severity)}, {"message", diagnostic.message}});
+  }
+  return list;
+}
+
+SaveOptions ToSaveOptions(const ConvertOptions& options) {
+  SaveOptions save{.overwrite = options.common.overwrite(), .units = options.units};
+  if (!options.up.empty()) save.up_axis = ParseUpAxis(options.up);
+  return save;
+}
+
+int Run(const ConvertOptions& options) {
+  const TakeStretch stretch = ParseMotionArgument(options.input);
+  const MotionFormat* format = FindMotionFormat(options.output);
+  if (format != nullptr && format->save != nullptr) {
+    CheckWritable(options.output, options.common.overwrite());
+  }
+  Recording recording = LoadStretch(stretch, options.common.load);
+  PrintDiagnostics(options.common, stretch.file, recording.diagnostics);
+  if (options.rate_hz > 0 && options.rate_hz != recording.rate_hz()) {
+    recording = ResampleRecording(recording, options.rate_hz);
+  }
+  Diagnostics lost;
+  SaveRecording(recording, options.output, ToSaveOptions(options), lost);
+  PrintDiagnostics(options.common, options.output, lost);
+  if (options.common.json) {
+    PrintJson({{"file", options.output.string()},
+               {"format", format->name},
+               {"frames", recording.frame_count()},
+               {"rate_hz", recording.rate_hz()},
+               {"diagnostics", ToJson(lost)}});
+  } else {
+    PrintWritten(options.common, options.output);
+  }
+  return kDone;
+}
+
+std::string FormatList() {
+  std::string text = "Formats by the ending of the file's name:";
+  for (const MotionFormat& format : MotionFormats()) {
+    text += fmt::format("\n  {:<6}{:<12}{}", format.extension,
+                        format.load == nullptr ? "write" : "read, write", format.description);
+  }
+  return text;
+}
+
+}  // namespace
+
+void AddConvertCommand(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = program.add_subcommand("convert", "Turn a motion file into another format");
+  command->add_option("IN", options->input, "Motion file, or a stretch: take.amc:120-480")
+      ->required();
+  command->add_option("OUT", options->output, "File to write; its ending tells the format")
+      ->required();
+  command->add_option("--rate", options->rate_hz, "Resample to so many frames a second")
+      ->check(NumberBetween(kSmallestRateHz, kLargestRateHz))
+      ->type_name("HZ");
+  command
+      ->add_option("--up", options->up,
+                   "Axis that points up in OUT (default: as the format expects, or as it was)")
+      ->check(OneOf({"x", "y", "z"}))
+      ->type_name("x|y|z");
+  command->add_option("--units", options->units, "Unit of lengths in OUT (default: the same)")
+      ->check(OneOf({"mm", "cm", "m", "inch"}))
+      ->type_name("mm|cm|m|inch");
+  AddOutputOptions(*command, options->common);
+  AddForceOption(*command, options->common);
+  AddLoadOptions(*command, options->common);
+  command->footer(FormatList() + "\n\nExample:\n  kinebase convert walk.c3d walk.trc --units m");
+  command->callback([options, &exit_code] { exit_code = Run(*options); });
+}
+
+}  // namespace kinebase::cli

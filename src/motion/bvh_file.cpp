@@ -1,0 +1,86 @@
+// BVH as a row of MotionFormats().
+
+#include <utility>
+
+#include "fmt/format.h"
+#include "kinebase/core/error.h"
+#include "kinebase/motion/bvh_motion.h"
+#include "motion/file_formats.h"
+
+namespace kinebase::internal {
+namespace {
+
+// The record of a recording that was read from BVH; null for others.
+const BvhMotion* RecordOf(const Recording& recording) {
+  return recording.record == nullptr ? nullptr : std::get_if<BvhMotion>(recording.record.get());
+}
+
+bool WantsOtherWorld(const Recording& recording, const SaveOptions& options) {
+  const bool other_axis = options.up_axis && ToString(*options.up_axis) != recording.up_axis;
+  const bool other_units = !options.units.empty() &&
+                           CentimetresPerUnit(options.units) != CentimetresPerUnit(recording.units);
+  return other_axis || other_units;
+}
+
+// The record, with a frame count that is true: others believe it.
+std::string FormatRecord(const BvhMotion& bvh, Diagnostics& diagnostics) {
+  const auto rows = static_cast<std::int64_t>(bvh.frame_count());
+  if (bvh.declared_frame_count == rows) return FormatBvh(bvh);
+  diagnostics.push_back(
+      {Severity::kInfo,
+       fmt::format("'Frames:' is written as {}, the number of rows; the file that was read {}",
+                   rows,
+                   bvh.declared_frame_count ? fmt::format("said {}", *bvh.declared_frame_count)
+                                            : std::string("had none"))});
+  BvhMotion corrected = bvh;
+  corrected.declared_frame_count = rows;
+  return FormatBvh(corrected);
+}
+
+}  // namespace
+
+Recording LoadBvh(const std::filesystem::path& path, const LoadOptions& options) {
+  BvhMotion bvh = ReadBvh(path, {.strict = options.strict});
+  Recording recording{.path = path, .format = "BVH", .name = ParseTakeName(path)};
+  recording.diagnostics = std::exchange(bvh.diagnostics, {});
+  BvhBuildOptions build{.units = options.units, .up_axis = options.up_axis};
+  if (bvh.frame_time_s <= 0)
+    build.rate_hz = ChooseRate(recording.name, options, recording.diagnostics);
+  try {
+    BvhFigure figure = BuildFigure(bvh, build, recording.diagnostics);
+    recording.units = std::move(figure.units);
+    recording.up_axis = ToString(figure.up_axis);
+    recording.motion = std::move(figure.motion);
+    recording.joint_sources = std::move(figure.joint_sources);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.message(), {path});
+  }
+  recording.record = std::make_shared<const FileRecord>(std::move(bvh));
+  return recording;
+}
+
+void SaveBvh(const Recording& recording, const std::filesystem::path& path,
+             const SaveOptions& options, Diagnostics& diagnostics) {
+  if (!recording.has_skeleton()) {
+    throw Error(ErrorCode::kMismatch,
+                "BVH holds a skeleton that moves, the recording markers; write C3D, TRC or CSV",
+                {path});
+  }
+  const BvhMotion* record = RecordOf(recording);
+  if (record != nullptr && !WantsOtherWorld(recording, options)) {
+    WriteFile(path, FormatRecord(*record, diagnostics), options.overwrite);
+    return;
+  }
+  BvhWriteOptions write;
+  if (record != nullptr) {
+    write.units = recording.units;
+    write.up_axis = ParseUpAxis(recording.up_axis).value_or(UpAxis::kY);
+  }
+  if (!options.units.empty()) write.units = options.units;
+  if (options.up_axis) write.up_axis = *options.up_axis;
+  BvhMotion bvh = ToBvh(recording.motion, write, diagnostics);
+  if (record != nullptr) bvh.frame_time_text = record->frame_time_text;
+  WriteFile(path, FormatBvh(bvh), options.overwrite);
+}
+
+}  // namespace kinebase::internal

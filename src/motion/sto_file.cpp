@@ -1,0 +1,86 @@
+// The rows of MOT and STO: joint angles or orientations of a skeleton; of a C3D with analog samples
+// the ground forces or all channels.
+
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "fmt/format.h"
+#include "kinebase/core/error.h"
+#include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/sto_motion.h"
+#include "motion/file_formats.h"
+
+namespace kinebase::internal {
+namespace {
+
+void CheckOptions(const SaveOptions& options, const std::filesystem::path& path) {
+  const bool wants_other_units =
+      !options.units.empty() && CentimetresIn(options.units) != CentimetresIn("m");
+  if (options.up_axis.value_or(UpAxis::kY) == UpAxis::kY && !wants_other_units) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              "OpenSim's tables have Y up and metres by definition; write them without --up and "
+              "--units",
+              {path});
+}
+
+const C3dRecording& AnalogOf(const Recording& recording, const std::filesystem::path& path) {
+  const auto* c3d = recording.record ? std::get_if<C3dRecording>(recording.record.get()) : nullptr;
+  if (c3d != nullptr && c3d->analog_per_frame() > 0) return *c3d;
+  throw Error(ErrorCode::kMismatch,
+              fmt::format("MOT and STO hold joint angles or analog channels and {} has markers "
+                          "only; TRC holds markers",
+                          Quoted(recording.path.filename().string())),
+              {path});
+}
+
+void ReportMarkersLeft(const Recording& recording, Diagnostics& diagnostics) {
+  diagnostics.push_back(
+      {Severity::kInfo, fmt::format("the {} markers are not in this file; TRC holds them",
+                                    recording.markers.marker_count())});
+}
+
+void Write(StoTable table, const std::filesystem::path& path, const SaveOptions& options) {
+  table.name = path.stem().string();
+  WriteFile(path, FormatSto(table), options.overwrite);
+}
+
+StoTable AnalogTable(const Recording& recording, const std::filesystem::path& path,
+                     Diagnostics& diagnostics) {
+  StoTable table = ToAnalogTable(AnalogOf(recording, path), diagnostics);
+  ReportMarkersLeft(recording, diagnostics);
+  return table;
+}
+
+}  // namespace
+
+void SaveMot(const Recording& recording, const std::filesystem::path& path,
+             const SaveOptions& options, Diagnostics& diagnostics) {
+  CheckOptions(options, path);
+  if (recording.has_skeleton()) {
+    return Write(ToJointAngles(recording.motion), path, options);
+  }
+  const C3dRecording& c3d = AnalogOf(recording, path);
+  const GroundForceOptions ground{.up = ParseUpAxis(recording.up_axis).value_or(UpAxis::kZ),
+                                  .cm_per_unit = CentimetresIn(recording.units).value_or(.1)};
+  StoTable forces = ToGroundForces(c3d, ground, diagnostics);
+  if (forces.labels.empty()) return Write(AnalogTable(recording, path, diagnostics), path, options);
+  diagnostics.push_back(
+      {Severity::kInfo, "MOT holds the ground forces; STO holds all analog channels as they are"});
+  ReportMarkersLeft(recording, diagnostics);
+  Write(std::move(forces), path, options);
+}
+
+void SaveSto(const Recording& recording, const std::filesystem::path& path,
+             const SaveOptions& options, Diagnostics& diagnostics) {
+  CheckOptions(options, path);
+  if (!recording.has_skeleton()) {
+    return Write(AnalogTable(recording, path, diagnostics), path, options);
+  }
+  diagnostics.push_back(
+      {Severity::kInfo,
+       "STO holds orientations only; MOT holds joint angles and where the root is"});
+  Write(ToOrientations(recording.motion), path, options);
+}
+
+}  // namespace kinebase::internal
