@@ -35,12 +35,38 @@ SaveOptions ToSaveOptions(const ConvertOptions& options) {
   return save;
 }
 
+// Whoever converts wants to know all that the result lacks, not only what is odd.
+void PrintLosses(const ConvertOptions& options, const Diagnostics& lost) {
+  for (const Diagnostic& diagnostic : lost) {
+    PrintNote(options.common, fmt::format("{}: {}: {}", options.output.string(),
+                                          ToString(diagnostic.severity), diagnostic.message));
+  }
+}
+
+const MotionFormat& FormatToWrite(const std::filesystem::path& output) {
+  const MotionFormat* const format = FindMotionFormat(output);
+  if (format != nullptr && format->save != nullptr) return *format;
+  std::string endings;
+  for (const MotionFormat& other : MotionFormats()) {
+    if (other.save == nullptr) continue;
+    endings.append(endings.empty() ? "" : ", ").append(other.extension);
+  }
+  throw UsageError(
+      fmt::format("the ending of {} names no format that can be written; those that can: {}",
+                  Quoted(output.string()), endings));
+}
+
+// An AMC is written with its skeleton beside it; else empty.
+std::filesystem::path SkeletonBeside(const std::filesystem::path& output) {
+  const std::string extension = output.extension().string();
+  if (!EqualsIgnoringCase(extension, ".amc")) return {};
+  return std::filesystem::path(output).replace_extension(".asf");
+}
+
 int Run(const ConvertOptions& options) {
   const TakeStretch stretch = ParseMotionArgument(options.input);
-  const MotionFormat* format = FindMotionFormat(options.output);
-  if (format != nullptr && format->save != nullptr) {
-    CheckWritable(options.output, options.common.overwrite());
-  }
+  const MotionFormat& format = FormatToWrite(options.output);
+  CheckWritable(options.output, options.common.overwrite());
   Recording recording = LoadStretch(stretch, options.common.load);
   PrintDiagnostics(options.common, stretch.file, recording.diagnostics);
   if (options.rate_hz > 0 && options.rate_hz != recording.rate_hz()) {
@@ -48,15 +74,18 @@ int Run(const ConvertOptions& options) {
   }
   Diagnostics lost;
   SaveRecording(recording, options.output, ToSaveOptions(options), lost);
-  PrintDiagnostics(options.common, options.output, lost);
+  PrintLosses(options, lost);
+  const std::filesystem::path skeleton = SkeletonBeside(options.output);
   if (options.common.json) {
     PrintJson({{"file", options.output.string()},
-               {"format", format->name},
+               {"format", format.name},
                {"frames", recording.frame_count()},
                {"rate_hz", recording.rate_hz()},
+               {"skeleton", skeleton.empty() ? Json() : Json(skeleton.string())},
                {"diagnostics", ToJson(lost)}});
   } else {
     PrintWritten(options.common, options.output);
+    if (!skeleton.empty()) PrintWritten(options.common, skeleton);
   }
   return kDone;
 }

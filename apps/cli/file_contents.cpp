@@ -49,6 +49,7 @@ std::string DescribeEvents(const std::vector<C3dEvent>& events) {
 
 std::string DescribeForcePlates(const std::vector<C3dForcePlate>& plates) {
   std::vector<std::string> types;
+  types.reserve(plates.size());
   for (const C3dForcePlate& plate : plates) types.push_back(fmt::format("type {}", plate.type));
   return fmt::format("{}", fmt::join(types, ", "));
 }

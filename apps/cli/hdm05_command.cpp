@@ -46,6 +46,7 @@ std::string TitleOf(const Hdm05Match& match) {
 
 std::vector<int> NumbersOf(const std::vector<const Hdm05Step*>& steps) {
   std::vector<int> numbers;
+  numbers.reserve(steps.size());
   for (const Hdm05Step* step : steps) numbers.push_back(step->number);
   return numbers;
 }

@@ -80,7 +80,7 @@ std::string RotationTable(const Motion& motion, bool euler) {
 std::string MakeTable(const Recording& recording, const JointsOptions& options) {
   Diagnostics diagnostics = recording.diagnostics;
   if (options.rotations.empty()) {
-    const std::string table = PositionTable(StandardJoints(recording, diagnostics));
+    std::string table = PositionTable(StandardJoints(recording, diagnostics));
     PrintDiagnostics(options.common, recording.path, diagnostics);
     return table;
   }

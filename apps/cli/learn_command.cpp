@@ -117,6 +117,7 @@ int Run(LearnCommandOptions& options) {
   }
   if (batch.takes.empty()) return kCouldNot;
   std::vector<TemplateMatrix> performances;
+  performances.reserve(batch.takes.size());
   for (const TakeFeatures& take : batch.takes) {
     performances.push_back(ToTemplateMatrix(take.features));
   }

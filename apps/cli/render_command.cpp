@@ -54,6 +54,7 @@ int Run(const RenderOptions& options) {
   for (const auto& name : options.trails) strip.trails.push_back(ParseTrail(name));
   CheckWritable(options.output, options.common.overwrite());
   std::vector<PoseStripRow> rows;
+  rows.reserve(options.motions.size());
   for (const auto& motion : options.motions) rows.push_back(LoadRow(motion, options));
   DrawPoseStrip(rows, options.output, options.common.overwrite(), strip);
   if (options.common.json) {

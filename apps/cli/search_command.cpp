@@ -138,6 +138,7 @@ int Run(const SearchCommandOptions& options) {
     CheckWritable(options.curve, options.common.overwrite());
   }
   std::vector<Query> queries;
+  queries.reserve(options.templates.size());
   for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
   std::vector<TakeStretch> stretches;
   for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});

@@ -33,7 +33,7 @@ int Run(SortCommandOptions& options) {
     }
   }
   const std::string_view left =
-      options.start.empty() ? "their names hold no motion class" : "their names give no folder";
+      options.start.empty() ? "no motion class in the name" : "no folder by the name";
   return ShowAndApply(PlanSort(options.folder, options.sort), options.dry_run, left,
                       options.common);
 }

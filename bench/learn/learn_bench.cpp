@@ -21,7 +21,8 @@ constexpr int kFeatures = 39;
 // still_features  Those that never change in this class.
 std::vector<TemplateMatrix> MakePerformances(int count, int columns, int still_features) {
   std::mt19937 random(1);
-  std::vector<std::vector<double>> motion(4 * columns, std::vector<double>(kFeatures));
+  std::vector<std::vector<double>> motion(4 * static_cast<std::size_t>(columns),
+                                          std::vector<double>(kFeatures));
   for (int feature = 0; feature < kFeatures; ++feature) {
     double state = random() % 2 == 0 ? 0 : 1;
     for (auto& column : motion) {

@@ -86,8 +86,9 @@ class FilesTest(CheckTest):
 
     def test_files_that_grew_too_far(self):
         self.write("long.cpp", "\n" * 601)
-        self.write("recording.amc", "\t\r\n" * 400000)
-        self.assert_findings(check_files, "long.cpp:601: 601 lines", "recording.amc:1: 1171 KiB")
+        self.write("fuzz/corpus/amc/long.amc", "\t\r\n" * 400000)
+        self.assert_findings(check_files, "fuzz/corpus/amc/long.amc:1: 1171 KiB",
+                             "long.cpp:601: 601 lines")
 
     def test_headers_are_read_once(self):
         self.write("a.h", "// A.\n#pragma once\n")

@@ -6,6 +6,7 @@
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/error.h"
+#include "kinebase/core/text_scanner.h"
 
 namespace kinebase {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 class CsvParser {
  public:
   CsvParser(std::string_view text, const std::filesystem::path& file) : rest_(text), file_(file) {
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
   }
 
   // The next line that is not empty; false at the end.

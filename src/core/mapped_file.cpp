@@ -49,6 +49,16 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   data_ = static_cast<const char*>(data);
 }
 
+void MappedFile::Release(std::string_view part) const {
+  // Whole pages only: what shares a page with the part may still be needed.
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const auto offset = static_cast<std::size_t>(part.data() - data_);
+  const std::size_t begin = (offset + page - 1) / page * page;
+  const std::size_t end = (offset + part.size()) / page * page;
+  if (begin >= end) return;
+  ::madvise(const_cast<char*>(data_) + begin, end - begin, MADV_DONTNEED);  // Failing is no harm.
+}
+
 MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(const_cast<char*>(data_), size_);
 }

@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <string>
 #include <system_error>
 
@@ -52,8 +54,8 @@ int WriteDurably(const std::filesystem::path& path, std::string_view contents) {
 
 // Gives the finished file its name. Without overwriting, link() refuses atomically where the name
 // is taken, which rename() would not.
-int Publish(const std::filesystem::path& temporary, const std::filesystem::path& path,
-            Overwrite overwrite) {
+int GiveName(const std::filesystem::path& temporary, const std::filesystem::path& path,
+             Overwrite overwrite) {
   if (overwrite == Overwrite::kYes) {
     return ::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
   }
@@ -67,6 +69,49 @@ int Publish(const std::filesystem::path& temporary, const std::filesystem::path&
   if (std::filesystem::exists(path, ignored)) return EEXIST;
   return ::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
 }
+
+// A file that is written and has not got its name yet.
+class PendingFile {
+ public:
+  PendingFile(const std::filesystem::path& named_path, std::string_view contents) {
+    // A link stays, and what it points to is written.
+    std::error_code not_there;
+    const std::filesystem::path target = std::filesystem::canonical(named_path, not_there);
+    path_ = not_there ? named_path : target;
+    if (path_.has_parent_path()) {
+      std::error_code error;
+      std::filesystem::create_directories(path_.parent_path(), error);
+      if (error) ThrowIoFailure(path_.parent_path(), error.value());
+    }
+    int error = 0;
+    do {  // A process that crashed under the same number may have left one behind.
+      temporary_ = TemporaryName(path_);
+      error = WriteDurably(temporary_, contents);
+    } while (error == EEXIST);
+    if (error == 0) return;
+    ::unlink(temporary_.c_str());
+    ThrowIoFailure(path_, error);
+  }
+  ~PendingFile() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  void Publish(Overwrite overwrite) {
+    const int error = GiveName(temporary_, path_, overwrite);
+    if (error == EEXIST) ThrowAlreadyExists(path_);
+    if (error != 0) ThrowIoFailure(path_, error);
+    temporary_.clear();
+  }
+
+  // What was not there before Publish() is gone again.
+  void Withdraw() const { ::unlink(path_.c_str()); }
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+};
 
 }  // namespace
 
@@ -83,29 +128,25 @@ void CheckWritable(const std::filesystem::path& path, Overwrite overwrite) {
   if (overwrite == Overwrite::kNo && is_there) ThrowAlreadyExists(path);
 }
 
-void WriteFile(const std::filesystem::path& named_path, std::string_view contents,
-               Overwrite overwrite) {
-  CheckWritable(named_path, overwrite);
-  // A link stays, and what it points to is written.
-  std::error_code not_there;
-  const std::filesystem::path target = std::filesystem::canonical(named_path, not_there);
-  const std::filesystem::path& path = not_there ? named_path : target;
-  if (path.has_parent_path()) {
-    std::error_code error;
-    std::filesystem::create_directories(path.parent_path(), error);
-    if (error) ThrowIoFailure(path.parent_path(), error.value());
+void WriteFile(const std::filesystem::path& path, std::string_view contents, Overwrite overwrite) {
+  const FileContents file{.path = path, .contents = contents};
+  WriteFiles({&file, 1}, overwrite);
+}
+
+void WriteFiles(std::span<const FileContents> files, Overwrite overwrite) {
+  for (const FileContents& file : files) CheckWritable(file.path, overwrite);
+  std::deque<PendingFile> pending;
+  for (const FileContents& file : files) pending.emplace_back(file.path, file.contents);
+  for (auto file = pending.begin(); file != pending.end(); ++file) {
+    try {
+      file->Publish(overwrite);
+    } catch (const Error&) {
+      if (overwrite == Overwrite::kNo) {
+        std::for_each(pending.begin(), file, [](const PendingFile& done) { done.Withdraw(); });
+      }
+      throw;
+    }
   }
-  std::filesystem::path temporary;
-  int error = 0;
-  do {  // A process that crashed under the same number may have left one behind.
-    temporary = TemporaryName(path);
-    error = WriteDurably(temporary, contents);
-  } while (error == EEXIST);
-  if (error == 0) error = Publish(temporary, path, overwrite);
-  if (error == 0) return;
-  ::unlink(temporary.c_str());
-  if (error == EEXIST) ThrowAlreadyExists(path);
-  ThrowIoFailure(path, error);
 }
 
 }  // namespace kinebase

@@ -11,7 +11,6 @@
 namespace kinebase {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kBlanks = " \t\v\f\r";
 constexpr std::size_t kMaxQuotedLength = 40;
 
@@ -89,6 +88,13 @@ bool LineScanner::Next() {
   terminated_ = ending > 0;
   rest_.remove_prefix(length + ending);
   return true;
+}
+
+void LineScanner::Skip(std::size_t bytes, std::int64_t lines) {
+  rest_.remove_prefix(bytes);
+  line_number_ += lines;
+  line_ = {};
+  terminated_ = true;
 }
 
 std::string_view TakeToken(std::string_view& text) {

@@ -1,19 +1,22 @@
 // Reads and writes AMC.
 //
-// One pass over the mapped text. The first frame is read in general and fixes the columns; from
-// then on each line is first compared with the bone that stood in its place in the first frame,
-// which in practice always fits, and looked up by name only where it does not.
+// One pass over the mapped text. The first frame is read in general and fixes the columns. In
+// practice all others have the same bones in the same order and nothing else, and such a frame is
+// read as a whole; only one that differs in any way is read line by line.
 
 #include "kinebase/formats/amc.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
 #include "fmt/format.h"
+#include "formats/decimal_number.h"
+#include "formats/text_lines.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/text_scanner.h"
@@ -53,10 +56,13 @@ void SkipBlanks(std::string_view& text) {
 class AmcParser {
  public:
   AmcParser(std::string_view text, const std::filesystem::path& file, const AmcReadOptions& options)
-      : lines_(text), file_(file), options_(options) {}
+      : lines_(text), text_(text), file_(file), options_(options) {}
 
   AmcMotion Parse() {
-    while (lines_.Next()) {
+    while (true) {
+      while (TakeUsualFrame()) {
+      }
+      if (!lines_.Next()) break;
       try {
         TakeLine();
       } catch (const Error&) {
@@ -83,6 +89,64 @@ class AmcParser {
   static bool IsFrameLine(std::string_view line) {
     SkipBlanks(line);
     return !line.empty() && (IsDigit(line.front()) || line.front() == '+' || line.front() == '-');
+  }
+
+  // Reads a frame that has the next number and all bones in order, each with its values, a line
+  // each. False if what follows is anything else; it is then still to be read.
+  bool TakeUsualFrame() {
+    if (amc_.bones.empty() || bones_in_frame_ != amc_.bones.size()) return false;
+    const std::string_view rest = lines_.rest();
+    const char* at = rest.data();
+    const char* const end = at + rest.size();
+    const std::int64_t before = amc_.frame_numbers.back();
+    std::int64_t number = before;  // As it stays if there is none.
+    at = std::from_chars(at, end, number).ptr;
+    if (number <= before || number - 1 > before || !TakeLineEnd(at, end)) return false;
+    usual_frame_.resize(amc_.column_count);
+    double* value = usual_frame_.data();
+    for (const AmcBone& bone : amc_.bones) {
+      if (static_cast<std::size_t>(end - at) < bone.name.size()) return false;
+      if (std::memcmp(at, bone.name.data(), bone.name.size()) != 0) return false;
+      at += bone.name.size();
+      for (std::size_t i = 0; i < bone.column_count; ++i, ++value) {
+        if (!TakeBlanks(at, end)) return false;
+        const auto [next, error] = internal::NumberFromChars(at, end, end, *value);
+        if (error != std::errc()) return false;
+        at = next;
+      }
+      if (!TakeLineEnd(at, end)) return false;
+    }
+    if (in_first_frame()) Reserve(rest.data());
+    amc_.frame_numbers.push_back(number);
+    amc_.values.insert(amc_.values.end(), usual_frame_.begin(), usual_frame_.end());
+    frame_line_ = lines_.line_number() + 1;
+    last_line_has_values_ = true;
+    lines_.Skip(static_cast<std::size_t>(at - rest.data()),
+                static_cast<std::int64_t>(amc_.bones.size()) + 1);
+    return true;
+  }
+
+  // False if there are none.
+  static bool TakeBlanks(const char*& at, const char* end) {
+    if (at == end || (*at != ' ' && *at != '\t')) return false;
+    do {
+      ++at;
+    } while (at != end && (*at == ' ' || *at == '\t'));
+    return true;
+  }
+
+  static bool TakeLineEnd(const char*& at, const char* end) {
+    TakeBlanks(at, end);
+    if (at != end && *at == '\r') ++at;
+    if (at == end || *at != '\n') return false;
+    ++at;
+    return true;
+  }
+
+  void Reserve(const char* first_frame_end) {
+    const std::size_t frames = internal::GuessFrames(first_frame_, first_frame_end, text_);
+    amc_.frame_numbers.reserve(frames);
+    amc_.values.reserve(frames * amc_.column_count);
   }
 
   void TakeLine() {
@@ -154,6 +218,8 @@ class AmcParser {
         first_jump_ = {before, *number, lines_.line_number()};
       }
     }
+    if (amc_.frame_numbers.empty()) first_frame_ = line.data();
+    if (in_first_frame()) Reserve(line.data());
     amc_.frame_numbers.push_back(*number);
     frame_line_ = lines_.line_number();
     bones_in_frame_ = 0;
@@ -313,11 +379,14 @@ class AmcParser {
   }
 
   LineScanner lines_;
+  const std::string_view text_;
+  const char* first_frame_ = nullptr;  // Where it begins in the text.
   const std::filesystem::path& file_;
   const AmcReadOptions& options_;
   AmcMotion amc_;
   std::unordered_map<std::string, std::size_t> bone_index_;
-  std::vector<bool> seen_;  // [bone] in the current frame.
+  std::vector<double> usual_frame_;  // Values of the frame that is read as a whole.
+  std::vector<bool> seen_;           // [bone] in the current frame.
   std::size_t bones_in_frame_ = 0;
   std::int64_t frame_line_ = 0;
   std::int64_t jumps_ = 0;  // Of frame numbers.

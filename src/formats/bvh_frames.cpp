@@ -1,11 +1,14 @@
-// The frames of a BVH file: one pass of from_chars over the mapped text.
+// The frames of a BVH file: one pass over the mapped text.
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <vector>
 
 #include "fmt/format.h"
 #include "formats/bvh_reader.h"
+#include "formats/decimal_number.h"
+#include "formats/text_lines.h"
 
 namespace kinebase::internal {
 namespace {
@@ -81,11 +84,38 @@ class FrameReader {
     }
   }
 
-  // The values of a line. A row that its line leaves short goes on in the next.
+  // The values of a line.
   void TakeValues(std::string_view line) {
-    if (bvh_.values.empty()) Reserve();
+    const bool begins_row = bvh_.values.size() % bvh_.column_count == 0;
+    if (begins_row) row_line_ = context_.lines.line_number();
+    if (begins_row && TakeWholeRow(line)) return;
+    TakePartsOfRows(line);
+  }
+
+  // What nearly all lines are: numbers for all columns. False if this one is not, and is still to
+  // be read.
+  bool TakeWholeRow(std::string_view line) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    const char* const text_end = context_.text.data() + context_.text.size();
+    row_.resize(bvh_.column_count);
+    for (double& value : row_) {
+      const auto [next, error] = NumberFromChars(at, end, text_end, value);
+      if (error != std::errc() || (next != end && !IsBlank(*next))) return false;
+      at = next;
+      while (at != end && IsBlank(*at)) ++at;
+    }
+    if (at != end) return false;
+    if (bvh_.values.empty()) {
+      bvh_.values.reserve(GuessFrames(line.data(), end, context_.text) * row_.size());
+    }
+    bvh_.values.insert(bvh_.values.end(), row_.begin(), row_.end());
+    return true;
+  }
+
+  // A row that its line leaves short goes on in the next.
+  void TakePartsOfRows(std::string_view line) {
     const std::size_t before = bvh_.values.size();
-    if (before % bvh_.column_count == 0) row_line_ = context_.lines.line_number();
     const char* at = line.data();
     const char* const end = at + line.size();
     while (at != end) {
@@ -115,14 +145,6 @@ class FrameReader {
       context_.Unexpected("a number", token);
     }
     return rest.data();
-  }
-
-  // As many as are declared, but never more than the text can hold: a digit and a blank each.
-  void Reserve() {
-    const auto rows = static_cast<std::size_t>(bvh_.declared_frame_count.value_or(0));
-    const std::size_t most = context_.text_size / 2;
-    const bool fits = rows < most / bvh_.column_count;
-    bvh_.values.reserve(fits ? (rows + 1) * bvh_.column_count : most);
   }
 
   void CountRow(std::size_t before) {
@@ -201,6 +223,7 @@ class FrameReader {
 
   BvhContext& context_;
   BvhMotion& bvh_;
+  std::vector<double> row_;    // That is read as a whole.
   std::int64_t row_line_ = 0;  // Where the current row begins.
   std::int64_t frame_count_line_ = 0;
   std::int64_t wrapped_rows_ = 0;

@@ -181,7 +181,7 @@ class HierarchyReader {
     if (block.is_end_site) {
       // Seen from writers that treat every node alike; anything but 0 would have columns.
       if (*count > 0) Fail(NameOf(block) + " cannot have channels");
-      bvh_.joints[block.joint].end_sites.back().unknown.push_back("CHANNELS 0");
+      bvh_.joints[block.joint].end_sites.back().unknown.emplace_back("CHANNELS 0");
       return;
     }
     if (std::exchange(block.has_channels, true)) Fail(NameOf(block) + " has a second 'CHANNELS'");

@@ -13,9 +13,9 @@
 namespace kinebase {
 namespace internal {
 
-BvhContext::BvhContext(std::string_view text, const std::filesystem::path& file,
+BvhContext::BvhContext(std::string_view whole_text, const std::filesystem::path& file,
                        const BvhReadOptions& read_options)
-    : lines(text), text_size(text.size()), options(read_options), file_(file) {
+    : lines(whole_text), text(whole_text), options(read_options), file_(file) {
   bvh.file_name = file.filename().string();
 }
 

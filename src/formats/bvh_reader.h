@@ -13,11 +13,11 @@ namespace kinebase::internal {
 
 class BvhContext {
  public:
-  BvhContext(std::string_view text, const std::filesystem::path& file,
+  BvhContext(std::string_view whole_text, const std::filesystem::path& file,
              const BvhReadOptions& options);
 
   LineScanner lines;
-  const std::size_t text_size;
+  const std::string_view text;
   const BvhReadOptions& options;
   BvhMotion bvh;
 

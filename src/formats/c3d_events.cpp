@@ -22,7 +22,7 @@ double StartOf(const C3dRecording& recording) {
 
 // EVENT:TIMES holds minutes and seconds of each event; some writers leave the minutes out.
 std::vector<double> EventTimes(const C3dRecording& recording) {
-  const std::vector<double> stored = NumberList(recording, "EVENT", "TIMES");
+  std::vector<double> stored = NumberList(recording, "EVENT", "TIMES");
   const C3dParameter* times = FindParameter(recording, "EVENT", "TIMES");
   if (times == nullptr) return {};
   if (times->dimensions.size() < 2 || times->dimensions.front() != 2) return stored;

@@ -32,10 +32,11 @@ T* Extend(std::vector<T>& values, std::size_t count) {
 }
 
 template <typename Codec>
-void ReadFloatFrames(Codec codec, const char* from, C3dRecording& recording) {
+const char* ReadFloatFrames(Codec codec, const char* from, std::size_t count,
+                            C3dRecording& recording) {
   const std::size_t points = recording.point_count;
   const std::size_t samples = recording.analog_per_frame();
-  for (std::size_t frame = 0; frame < recording.frame_count; ++frame) {
+  for (std::size_t frame = 0; frame < count; ++frame) {
     C3dPoint* point = Extend(recording.points, points);
     float* sample = Extend(recording.analog, samples);
     if constexpr (kIsNative<Codec>) {
@@ -51,10 +52,12 @@ void ReadFloatFrames(Codec codec, const char* from, C3dRecording& recording) {
       for (std::size_t i = 0; i < samples; ++i, from += 4) sample[i] = codec.LoadFloat(from);
     }
   }
+  return from;
 }
 
 template <typename Codec>
-void ReadIntegerFrames(Codec codec, const char* from, C3dRecording& recording) {
+const char* ReadIntegerFrames(Codec codec, const char* from, std::size_t count,
+                              C3dRecording& recording) {
   const auto load = [&](std::size_t place) {
     return static_cast<float>(static_cast<std::int16_t>(codec.LoadWord(from + 2 * place)));
   };
@@ -62,7 +65,7 @@ void ReadIntegerFrames(Codec codec, const char* from, C3dRecording& recording) {
   const float scale = recording.scale;
   const std::size_t points = recording.point_count;
   const std::size_t samples = recording.analog_per_frame();
-  for (std::size_t frame = 0; frame < recording.frame_count; ++frame) {
+  for (std::size_t frame = 0; frame < count; ++frame) {
     C3dPoint* point = Extend(recording.points, points);
     for (std::size_t i = 0; i < points; ++i, from += 8) {
       point[i] = {load(0) * scale, load(1) * scale, load(2) * scale, load(3)};
@@ -72,6 +75,7 @@ void ReadIntegerFrames(Codec codec, const char* from, C3dRecording& recording) {
       sample[i] = is_unsigned ? static_cast<float>(codec.LoadWord(from)) : load(0);
     }
   }
+  return from;
 }
 
 // The nearest 16-bit number; 0 for what is none.
@@ -116,14 +120,22 @@ void WriteIntegerFrame(Codec codec, const C3dRecording& recording, std::size_t f
 
 }  // namespace
 
-void ReadFrames(const char* from, C3dRecording& recording) {
+void ReadFrames(const char* from, C3dRecording& recording,
+                const std::function<void(std::string_view)>& release) {
+  const std::size_t samples = recording.analog_per_frame();
   recording.points.reserve(recording.frame_count * recording.point_count);
-  recording.analog.reserve(recording.frame_count * recording.analog_per_frame());
+  recording.analog.reserve(recording.frame_count * samples);
+  // Bytes that are done with take no memory beside the numbers that they became.
+  constexpr std::size_t kPart = std::size_t{1} << 20;
+  const std::size_t frames_in_part = kPart / (16 * recording.point_count + 4 * samples + 1) + 1;
   WithCodec(recording.processor, [&](auto codec) {
-    if (recording.storage == C3dStorage::kFloat) {
-      ReadFloatFrames(codec, from, recording);
-    } else {
-      ReadIntegerFrames(codec, from, recording);
+    for (std::size_t done = 0; done < recording.frame_count; done += frames_in_part) {
+      const std::size_t count = std::min(frames_in_part, recording.frame_count - done);
+      const char* const end = recording.storage == C3dStorage::kFloat
+                                  ? ReadFloatFrames(codec, from, count, recording)
+                                  : ReadIntegerFrames(codec, from, count, recording);
+      release({from, static_cast<std::size_t>(end - from)});
+      from = end;
     }
   });
 }

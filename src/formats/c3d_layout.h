@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,7 +53,9 @@ void ReadParameterSection(std::string_view bytes, std::size_t begin, std::size_t
 std::string FormatParameterSection(const std::vector<C3dGroup>& groups, C3dProcessor processor);
 
 // Decodes `frame_count` frames from `from` into `points` and `analog`; all else is known by now.
-void ReadFrames(const char* from, C3dRecording& recording);
+// `release` gets each part of the bytes that is done with.
+void ReadFrames(const char* from, C3dRecording& recording,
+                const std::function<void(std::string_view)>& release);
 
 // Bytes that all frames take, and these bytes.
 std::size_t FrameBytes(const C3dRecording& recording);

@@ -166,7 +166,7 @@ class SectionReader {
       Warn(fmt::format("parameter {} {}; it is left out", Quoted(name), why), at_);
     };
     if (at + 2 > record_end_) return leave_out("is cut off");
-    const int type = static_cast<std::int8_t>(bytes_[at]);
+    const auto type = static_cast<std::int8_t>(bytes_[at]);
     const std::size_t dimension_count = Byte(at + 1);
     at += 2;
     if (at + dimension_count > record_end_) return leave_out("is cut off");

@@ -1,7 +1,9 @@
 // Finding, reading and changing parameters.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "fmt/format.h"
@@ -17,7 +19,10 @@ constexpr std::size_t kMaxDimension = 255;
 
 template <typename T>
 bool SameNumber(T a, T b) {
-  return a == b || (a != a && b != b);
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isnan(a)) return std::isnan(b);
+  }
+  return a == b;
 }
 
 std::string_view WithoutPadding(std::string_view text) {

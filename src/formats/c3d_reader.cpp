@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "fmt/format.h"
@@ -48,9 +49,10 @@ bool Differ(double a, double b) { return std::abs(a - b) > 1e-5 * std::max(std::
 
 class C3dReader {
  public:
+  // `release` gets each part of the bytes that is done with.
   C3dReader(std::string_view bytes, const std::filesystem::path& file,
-            const C3dReadOptions& options)
-      : bytes_(bytes), file_(file), options_(options) {}
+            const C3dReadOptions& options, std::function<void(std::string_view)> release)
+      : bytes_(bytes), file_(file), options_(options), release_(std::move(release)) {}
 
   C3dRecording Read() {
     FindParameters();
@@ -440,7 +442,7 @@ class C3dReader {
   }
 
   void ReadFrames() {
-    if (frame_bytes_ > 0) internal::ReadFrames(bytes_.data() + data_begin_, recording_);
+    if (frame_bytes_ > 0) internal::ReadFrames(bytes_.data() + data_begin_, recording_, release_);
   }
 
   void KeepTrailing() {
@@ -461,6 +463,7 @@ class C3dReader {
   std::string_view bytes_;
   const std::filesystem::path& file_;
   const C3dReadOptions& options_;
+  std::function<void(std::string_view)> release_;
   C3dRecording recording_;
   FrameLayout header_layout_;
   std::size_t header_subframes_ = 0;
@@ -479,12 +482,13 @@ class C3dReader {
 
 C3dRecording ParseC3d(std::string_view bytes, const std::filesystem::path& file,
                       const C3dReadOptions& options) {
-  return C3dReader(bytes, file, options).Read();
+  return C3dReader(bytes, file, options, [](std::string_view) {}).Read();
 }
 
 C3dRecording ReadC3d(const std::filesystem::path& path, const C3dReadOptions& options) {
   const MappedFile file(path);
-  return ParseC3d(file.text(), path, options);
+  const auto release = [&](std::string_view part) { file.Release(part); };
+  return C3dReader(file.text(), path, options, release).Read();
 }
 
 }  // namespace kinebase

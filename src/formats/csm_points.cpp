@@ -8,16 +8,17 @@
 #include "csm_points.h"
 
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "decimal_number.h"
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
+#include "text_lines.h"
 
 namespace kinebase::internal {
 namespace {
@@ -52,6 +53,18 @@ class TokenCursor {
     return {{begin, static_cast<std::size_t>(at_ - begin)}, line_, is_first_in_line};
   }
 
+  // Takes the next word if it is a number in the current line; false, and nothing is taken, if not.
+  bool TakeNumber(double& value) {
+    const char* at = at_;
+    while (at != end_ && (*at == ' ' || *at == '\t')) ++at;
+    const auto [next, error] = NumberFromChars(at, end_, end_, value);
+    if (error != std::errc() || next == end_ || !IsSpace(*next)) return false;
+    at_ = next;
+    return true;
+  }
+
+  [[nodiscard]] const char* at() const { return at_; }
+
  private:
   // LF, or a CR that is not part of CRLF.
   [[nodiscard]] bool EndsLine() const {
@@ -68,12 +81,6 @@ bool IsDropout(std::string_view token) {
 }
 
 std::optional<double> ParseValue(std::string_view token) {
-  const char* const end = token.data() + token.size();
-  double value = 0;
-  const auto result = std::from_chars(token.data(), end, value);
-  if (result.ec == std::errc() && result.ptr == end) [[likely]] {
-    return value;
-  }
   // What Microsoft's C library prints for NaN and infinity: 1.#QNAN, -1.#IND00.
   if (token.find("1.#") != std::string_view::npos) return kMissing;
   return ParseDouble(token);
@@ -145,11 +152,18 @@ class PointsReader {
       return LeaveOut(first, fmt::format("the last frame, {}, is cut off", *number));
     }
     if (attempt.outcome == Outcome::kMisfit) FailMisfit(*number, first, attempt);
+    if (csm_.frame_numbers.empty()) Reserve(first.text.data(), attempt.after.at());
     csm_.frame_numbers.push_back(*number);
     csm_.values.insert(csm_.values.end(), values_[dropout].begin(), values_[dropout].end());
     cursor_ = attempt.after;
     if (attempt.stop.text.empty()) CheckEnd(attempt.stop.line);
     return true;
+  }
+
+  void Reserve(const char* first_frame, const char* first_frame_end) {
+    const std::size_t frames = GuessFrames(first_frame, first_frame_end, text_);
+    csm_.frame_numbers.reserve(frames);
+    csm_.values.reserve(frames * csm_.labels.size() * 3);
   }
 
   void CheckNumber(std::int64_t number, std::int64_t line) {
@@ -180,6 +194,7 @@ class PointsReader {
     std::vector<double>& values = values_[dropout];
     bool swallows_next = false;  // What looks like the next frame's number was taken for a value.
     for (std::size_t i = 0; i < values.size(); ++i) {
+      if (attempt.after.TakeNumber(values[i])) continue;
       attempt.stop = attempt.after.Next();
       const std::string_view text = attempt.stop.text;
       if (text.empty()) attempt.outcome = Outcome::kEnds;

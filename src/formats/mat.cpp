@@ -86,9 +86,9 @@ MatArray MatCells(std::vector<MatArray> elements) {
 
 MatArray MatStruct(std::vector<std::pair<std::string, MatArray>> fields) {
   MatArray array = OfClass(MatClass::kStruct, 1, 1);
-  for (auto& [name, value] : fields) {
-    array.fields.push_back(std::move(name));
-    array.elements.push_back(std::move(value));
+  for (auto& field : fields) {
+    array.fields.push_back(std::move(field.first));
+    array.elements.push_back(std::move(field.second));
   }
   return array;
 }

@@ -126,11 +126,10 @@ MarkerNames ReadMnm(const std::filesystem::path& path, const MnmReadOptions& opt
 
 std::string FormatMnm(const MarkerNames& names) {
   std::string out;
-  // A reader takes the first byte order mark for one, also where a name begins with it.
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const bool begins_with_a_name = names.comments.empty() && !names.rows.empty();
-  if (begins_with_a_name && names.rows.front().preset.starts_with(kByteOrderMark))
+  if (begins_with_a_name && names.rows.front().preset.starts_with(kByteOrderMark)) {
     out += kByteOrderMark;
+  }
   for (const auto& comment : names.comments) out += comment + '\n';
   for (const auto& row : names.rows) out += row.preset + ' ' + row.custom + '\n';
   return out;

@@ -187,6 +187,7 @@ std::string FormatSto(const StoTable& table) {
   out.reserve(table.values.size() * 12);
   const std::string counts =
       fmt::format("nRows={}\nnColumns={}\n", table.row_count(), table.column_count() + 1);
+  if (table.name.starts_with(kByteOrderMark)) out += kByteOrderMark;
   // A first line without '=' would be a name.
   out += table.name.empty() ? counts : table.name + '\n';
   if (!table.data_type.empty()) out += "DataType=" + table.data_type + '\n';

@@ -3,9 +3,9 @@
 #include "kinebase/library/file_moves.h"
 
 #include <fcntl.h>
-#include <stdio.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <map>
 #include <system_error>

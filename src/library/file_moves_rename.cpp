@@ -91,7 +91,8 @@ class RenamePlanner {
  private:
   void AddRow(const Row& row) {
     if (row.old_name == row.new_name) return;
-    if (!KnownExtension(row.old_name).empty() || internal::IsThere(folder_ / row.old_name)) {
+    if (!KnownExtension(row.old_name).empty() || internal::IsThere(folder_ / row.old_name) ||
+        HasBeenRenamed(row)) {
       AddFile(row.old_name, WithExtension(row, KnownExtension(row.old_name)), row);
       return;
     }
@@ -111,6 +112,13 @@ class RenamePlanner {
     }
     if (files.empty()) FailMissing(row.old_name, row);
     for (const auto& [old_name, new_name] : files) AddFile(old_name, new_name, row);
+  }
+
+  // A file of another kind than motions, by an earlier run.
+  [[nodiscard]] bool HasBeenRenamed(const Row& row) const {
+    std::error_code ignored;
+    return KnownExtension(row.new_name).empty() &&
+           fs::is_regular_file(folder_ / row.new_name, ignored);
   }
 
   // The row's new name for a file with this extension; with none the new name is as it stands.

@@ -82,6 +82,7 @@ std::array<double, 3> ToArray(const Eigen::Vector3d& v) { return {v.x(), v.y(), 
 
 std::vector<AsfDof> ToAsfDofs(const std::vector<Dof>& dofs) {
   std::vector<AsfDof> result;
+  result.reserve(dofs.size());
   for (const Dof dof : dofs) result.push_back(static_cast<AsfDof>(dof));
   return result;
 }

@@ -137,8 +137,8 @@ void SaveAsfAmc(const Recording& recording, const std::filesystem::path& path,
   TellRate(recording.rate_hz(), path, record.amc);
   const std::string asf_text = FormatAsf(record.asf);
   const std::string amc_text = FormatAmc(record.amc);
-  WriteFile(skeleton, asf_text, options.overwrite);
-  WriteFile(path, amc_text, options.overwrite);
+  const FileContents files[] = {{skeleton, asf_text}, {path, amc_text}};
+  WriteFiles(files, options.overwrite);
 }
 
 }  // namespace kinebase::internal

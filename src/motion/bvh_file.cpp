@@ -4,6 +4,7 @@
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
+#include "kinebase/core/text_scanner.h"
 #include "kinebase/motion/bvh_motion.h"
 #include "motion/file_formats.h"
 
@@ -22,18 +23,41 @@ bool WantsOtherWorld(const Recording& recording, const SaveOptions& options) {
   return other_axis || other_units;
 }
 
-// The record, with a frame count that is true: others believe it.
-std::string FormatRecord(const BvhMotion& bvh, Diagnostics& diagnostics) {
+bool TellsRate(const BvhMotion& bvh) {
+  if (bvh.frame_time_s <= 0) return false;
+  const double rate_hz = SnapRate(bvh.frame_time_s);
+  return rate_hz >= kSmallestRateHz && rate_hz <= kLargestRateHz;
+}
+
+// The text of a frame time as it was read, unless the rate came from elsewhere.
+void SetFrameTime(const BvhMotion& record, double rate_hz, BvhMotion& bvh) {
+  bvh.frame_time_s = 1 / rate_hz;
+  bvh.frame_time_text =
+      TellsRate(record) ? record.frame_time_text : ToShortestText(bvh.frame_time_s);
+}
+
+// The record, with a frame count and a frame time that are true: others believe them.
+std::string FormatRecord(const BvhMotion& bvh, double rate_hz, Diagnostics& diagnostics) {
   const auto rows = static_cast<std::int64_t>(bvh.frame_count());
-  if (bvh.declared_frame_count == rows) return FormatBvh(bvh);
-  diagnostics.push_back(
-      {Severity::kInfo,
-       fmt::format("'Frames:' is written as {}, the number of rows; the file that was read {}",
-                   rows,
-                   bvh.declared_frame_count ? fmt::format("said {}", *bvh.declared_frame_count)
-                                            : std::string("had none"))});
+  if (bvh.declared_frame_count == rows && TellsRate(bvh)) return FormatBvh(bvh);
   BvhMotion corrected = bvh;
-  corrected.declared_frame_count = rows;
+  if (bvh.declared_frame_count != rows) {
+    corrected.declared_frame_count = rows;
+    diagnostics.push_back(
+        {Severity::kInfo,
+         fmt::format("'Frames:' is written as {}, the number of rows; the file that was read {}",
+                     rows,
+                     bvh.declared_frame_count ? fmt::format("said {}", *bvh.declared_frame_count)
+                                              : std::string("had none"))});
+  }
+  if (!TellsRate(bvh)) {
+    SetFrameTime(bvh, rate_hz, corrected);
+    diagnostics.push_back(
+        {Severity::kInfo,
+         fmt::format(
+             "'Frame Time:' is written as {}, for {:g} Hz; the file that was read told none",
+             corrected.frame_time_text, rate_hz)});
+  }
   return FormatBvh(corrected);
 }
 
@@ -44,8 +68,15 @@ Recording LoadBvh(const std::filesystem::path& path, const LoadOptions& options)
   Recording recording{.path = path, .format = "BVH", .name = ParseTakeName(path)};
   recording.diagnostics = std::exchange(bvh.diagnostics, {});
   BvhBuildOptions build{.units = options.units, .up_axis = options.up_axis};
-  if (bvh.frame_time_s <= 0)
+  if (!TellsRate(bvh)) {
+    if (bvh.frame_time_s > 0) {
+      recording.diagnostics.push_back(
+          {Severity::kWarning,
+           fmt::format("'Frame Time:' {} gives no rate between {:g} and {:g} Hz",
+                       Quoted(bvh.frame_time_text), kSmallestRateHz, kLargestRateHz)});
+    }
     build.rate_hz = ChooseRate(recording.name, options, recording.diagnostics);
+  }
   try {
     BvhFigure figure = BuildFigure(bvh, build, recording.diagnostics);
     recording.units = std::move(figure.units);
@@ -61,14 +92,10 @@ Recording LoadBvh(const std::filesystem::path& path, const LoadOptions& options)
 
 void SaveBvh(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
-  if (!recording.has_skeleton()) {
-    throw Error(ErrorCode::kMismatch,
-                "BVH holds a skeleton that moves, the recording markers; write C3D, TRC or CSV",
-                {path});
-  }
+  RequireSkeleton(recording, "BVH", path);
   const BvhMotion* record = RecordOf(recording);
   if (record != nullptr && !WantsOtherWorld(recording, options)) {
-    WriteFile(path, FormatRecord(*record, diagnostics), options.overwrite);
+    WriteFile(path, FormatRecord(*record, recording.rate_hz(), diagnostics), options.overwrite);
     return;
   }
   BvhWriteOptions write;
@@ -79,7 +106,7 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
   if (!options.units.empty()) write.units = options.units;
   if (options.up_axis) write.up_axis = *options.up_axis;
   BvhMotion bvh = ToBvh(recording.motion, write, diagnostics);
-  if (record != nullptr) bvh.frame_time_text = record->frame_time_text;
+  if (record != nullptr) SetFrameTime(*record, recording.rate_hz(), bvh);
   WriteFile(path, FormatBvh(bvh), options.overwrite);
 }
 

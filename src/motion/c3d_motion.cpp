@@ -161,6 +161,14 @@ C3dPoint PointOf(const Eigen::Vector3d& place, MarkerState state, const C3dPoint
   return point;
 }
 
+// Whether the record, as its base did, says already which axis points up.
+bool TellsUpAxis(const C3dRecording& c3d, const C3dWriteOptions& options) {
+  if (options.base.recording == nullptr || options.base.up != options.up) return false;
+  Diagnostics ignored;
+  return FindParameter(c3d, "POINT", "Y_SCREEN") != nullptr &&
+         FindUpAxis(c3d, ignored) == options.up;
+}
+
 // diagnostics  Labels that are too long.
 void SetLabels(C3dRecording& c3d, const std::vector<std::string>& labels,
                Diagnostics& diagnostics) {
@@ -263,7 +271,7 @@ C3dRecording ToC3d(const MarkerCloud& markers, const C3dWriteOptions& options,
   AddRequired(c3d);
   SetLabels(c3d, labels, diagnostics);
   SetUnits(c3d, options.units);
-  SetUpAxis(c3d, options.up);
+  if (!TellsUpAxis(c3d, options)) SetUpAxis(c3d, options.up);
   return c3d;
 }
 

@@ -145,12 +145,13 @@ std::string FindUnits(const C3dRecording& recording, Diagnostics& diagnostics) {
   const Axes spread = MedianSpread(recording);
   const double size = *std::ranges::max_element(spread);
   std::string unit = "mm";
-  if (size > 0 && size < kLargestCentimetres) unit = size < kLargestMetres ? "m" : "cm";
+  if (size == 0) return unit;  // Nothing that has a length.
+  if (size < kLargestCentimetres) unit = size < kLargestMetres ? "m" : "cm";
   const std::string why = told.empty() ? "the file does not tell its unit of length"
                                        : "unknown unit of length " + Quoted(told);
   diagnostics.push_back(
       {Severity::kWarning,
-       fmt::format("{}; {} is taken, as markers are {:.3g} apart; --source-units says "
+       fmt::format("{}; {} is taken, as markers are {:.4g} apart; --source-units says "
                    "another",
                    why, unit, size)});
   return unit;
@@ -171,7 +172,9 @@ UpAxis FindUpAxis(const C3dRecording& recording, Diagnostics& diagnostics) {
   }
   const Axes body = FromFeetToHead(recording);
   const bool has_body = std::ranges::any_of(body, [](double value) { return value > 0; });
-  const UpAxis up = LargestAxis(has_body ? body : MedianSpread(recording));
+  const Axes spread = MedianSpread(recording);
+  const UpAxis up = LargestAxis(has_body ? body : spread);
+  if (std::ranges::all_of(spread, [](double value) { return value == 0; })) return up;
   diagnostics.push_back(
       {has_body ? Severity::kInfo : Severity::kWarning,
        fmt::format(

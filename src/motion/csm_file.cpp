@@ -97,11 +97,12 @@ Recording LoadCsm(const std::filesystem::path& path, const LoadOptions& options)
 void SaveCsm(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
   if (recording.has_skeleton()) {
-    throw Error(ErrorCode::kMismatch,
-                fmt::format("CSM holds markers and {} is a skeleton; formats for skeletons are "
-                            "ASF/AMC, BVH, GLB, MOT and MAT, and TRC takes its joints as points",
-                            Quoted(recording.path.filename().string())),
-                {path});
+    throw Error(
+        ErrorCode::kMismatch,
+        fmt::format("CSM holds markers and {} is a skeleton; formats for skeletons are "
+                    "ASF/AMC, BVH, GLB, MOT, NPZ and MAT; C3D and TRC take its joints as points",
+                    Quoted(recording.path.filename().string())),
+        {path});
   }
   const bool wants_other_units =
       !options.units.empty() && CentimetresIn(options.units) != CentimetresIn(kCsmUnits);

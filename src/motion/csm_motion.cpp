@@ -136,6 +136,7 @@ std::vector<std::string> PresetLabels(std::span<const std::string> labels, const
                                       Diagnostics& diagnostics) {
   std::vector<std::string> result;
   std::string bands;
+  bool any = names.rows.empty() || labels.empty();
   for (const auto& label : labels) {
     auto preset = names.PresetName(label);
     if (!preset) preset = names.PresetName(BareLabel(label));
@@ -143,12 +144,20 @@ std::vector<std::string> PresetLabels(std::span<const std::string> labels, const
       result.push_back(label);
       continue;
     }
+    any = true;
     if (const auto band = BandOfStick(*preset); band && EqualsIgnoringCase(*band, label)) {
       Append(bands, fmt::format("{} for {}", Quoted(label), Quoted(*preset)));
       result.push_back(label);
       continue;
     }
     result.emplace_back(*preset);
+  }
+  if (!any) {
+    diagnostics.push_back(
+        {Severity::kWarning,
+         fmt::format("the marker names fit none of the file's markers; a line is what a marker is "
+                     "and then what the file calls it, as {}",
+                     Quoted(BareLabel(labels.front())))});
   }
   if (!bands.empty()) {
     diagnostics.push_back(

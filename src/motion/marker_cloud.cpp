@@ -40,10 +40,11 @@ MarkerCloud CutMarkers(const MarkerCloud& markers, int first, int last) {
 
 MarkerCloud ResampleMarkers(const MarkerCloud& markers, double rate_hz) {
   const int samples = internal::SampleCount(markers.frame_count, markers.rate_hz, rate_hz);
-  MarkerCloud result{.labels = markers.labels,
-                     .rate_hz = rate_hz,
-                     .frame_count = samples,
-                     .first_frame = markers.first_frame};
+  MarkerCloud result{
+      .labels = markers.labels,
+      .rate_hz = rate_hz,
+      .frame_count = samples,
+      .first_frame = internal::FirstSample(markers.first_frame, markers.rate_hz, rate_hz)};
   result.positions_cm.reserve(result.Index(samples, 0));
   result.states.reserve(result.Index(samples, 0));
   for (int sample = 0; sample < samples; ++sample) {

@@ -231,8 +231,13 @@ void ReportSubjects(const MarkerCloud& markers, Diagnostics& diagnostics) {
 MarkerJoints ApproximateJoints(const MarkerCloud& markers, std::span<const MarkerSet> sets,
                                Diagnostics& diagnostics) {
   if (markers.frame_count == 0) throw Error(ErrorCode::kMismatch, "there are no frames");
-  std::string nearest = "there is no marker set";
-  std::ptrdiff_t most_joints = -1;
+  if (markers.labels.empty()) throw Error(ErrorCode::kMismatch, "there are no markers");
+  const auto is_missing = [](MarkerState state) { return state == MarkerState::kMissing; };
+  if (std::ranges::all_of(markers.states, is_missing)) {
+    throw Error(ErrorCode::kMismatch, "no marker is there in any frame");
+  }
+  std::string nearest = "no set knows any of their names";
+  std::ptrdiff_t most_joints = 0;
   for (const MarkerSet& set : sets) {
     MarkerTracks tracks(markers, set);
     const JointRows rows = ChooseRows(set, tracks);

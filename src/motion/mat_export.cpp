@@ -1,6 +1,7 @@
 // A recording as the structures `skel` and `mot`.
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@ using Fields = std::vector<std::pair<std::string, MatArray>>;
 // Indices of ours as MATLAB counts them.
 MatArray Indices(const std::vector<int>& indices) {
   std::vector<double> numbers;
+  numbers.reserve(indices.size());
   for (const int index : indices) numbers.push_back(index + 1);
   return MatColumn(std::move(numbers));
 }
@@ -32,6 +34,7 @@ MatArray CellsOrEmpty(std::vector<MatArray> elements) {
 
 MatArray Texts(const std::vector<std::string>& texts) {
   std::vector<MatArray> cells;
+  cells.reserve(texts.size());
   for (const std::string& text : texts) cells.push_back(MatText(text));
   return CellsOrEmpty(std::move(cells));
 }
@@ -56,6 +59,7 @@ MatArray LimitsOf(const Joint& joint, double unit_cm) {
 Fields NodeOf(const Skeleton& skeleton, int index, double unit_cm) {
   const Joint& joint = skeleton.joints()[static_cast<std::size_t>(index)];
   std::vector<std::string> dofs;
+  dofs.reserve(joint.dofs.size());
   for (const Dof dof : joint.dofs) dofs.emplace_back(ToString(static_cast<AsfDof>(dof)));
   return {{"children", Indices(skeleton.children(index))},
           {"jointName", MatText(joint.name)},
@@ -104,8 +108,8 @@ MatArray NameMapOf(const Skeleton& skeleton) {
 }
 
 MatArray NameMapOf(const MarkerCloud& markers) {
-  std::vector<double> indices;
-  for (int i = 0; i < markers.marker_count(); ++i) indices.push_back(i + 1);
+  std::vector<double> indices(markers.labels.size());
+  std::iota(indices.begin(), indices.end(), 1);
   return NameMap(markers.labels, std::vector<double>(indices.size(), 0), indices);
 }
 
@@ -210,6 +214,7 @@ MatArray SkelOf(const Skeleton& skeleton, double unit_cm) {
   const SkeletonSource& source = skeleton.source();
   const Eigen::Quaterniond orientation = skeleton.root_orientation();
   std::vector<MatArray> paths;
+  paths.reserve(skeleton.chains().size());
   for (const auto& chain : skeleton.chains()) paths.push_back(Indices(chain));
   return MatStruct(
       {{"njoints", MatScalar(skeleton.joint_count())},
@@ -258,6 +263,7 @@ MatArray MotOf(const Motion& motion, const std::string& file_name, double unit_c
 
 MatArray SkelOf(const MarkerCloud& markers, const std::string& file_name) {
   std::vector<MatArray> paths;
+  paths.reserve(markers.labels.size());
   for (int i = 0; i < markers.marker_count(); ++i) paths.push_back(Indices({i}));
   return MatStruct({{"njoints", MatScalar(markers.marker_count())},
                     {"rootRotationalOffsetEuler", MatColumn({0, 0, 0})},

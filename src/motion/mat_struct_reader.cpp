@@ -48,7 +48,7 @@ Eigen::Vector3d MatStructReader::Vector(std::string_view field, std::size_t elem
   if (numbers.size() != 3) {
     Fail(field, element, fmt::format("has {} numbers; expected three", numbers.size()));
   }
-  const Eigen::Vector3d vector(numbers.data());
+  Eigen::Vector3d vector(numbers.data());
   if (!vector.allFinite()) Fail(field, element, "is no vector of finite numbers");
   return vector;
 }

@@ -10,6 +10,7 @@
 
 namespace kinebase {
 
+using internal::FirstSample;
 using internal::PlaceOfSample;
 using internal::SampleCount;
 
@@ -94,7 +95,7 @@ Motion ResampleMotion(const Motion& motion, double rate_hz) {
   Motion result{.skeleton = motion.skeleton,
                 .rate_hz = rate_hz,
                 .frame_count = samples,
-                .first_frame = motion.first_frame};
+                .first_frame = FirstSample(motion.first_frame, motion.rate_hz, rate_hz)};
   const auto joints = static_cast<std::size_t>(motion.joint_count());
   const auto blend = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b, double share) {
     return Eigen::Vector3d(a + (b - a) * share);

@@ -41,6 +41,9 @@ constexpr std::array kFormats = {
     MotionFormat{"CSV", ".csv", "a table of places", nullptr, &internal::SaveCsv},
 };
 
+// Formats that are worth writing where there are only analog channels.
+constexpr std::array<std::string_view, 3> kChannelFormats = {"C3D", "MOT", "STO"};
+
 // Extensions of the formats that can be read, or written.
 template <typename Function>
 std::string Extensions(Function MotionFormat::*can) {
@@ -132,7 +135,7 @@ void RequireSkeleton(const Recording& recording, std::string_view format,
   if (recording.has_skeleton()) return;
   throw Error(ErrorCode::kMismatch,
               fmt::format("{} needs a skeleton and {} holds markers only; formats for markers are "
-                          "C3D, CSM, TRC, NPZ and CSV",
+                          "C3D, CSM, TRC, NPZ, MAT and CSV",
                           format, Quoted(recording.path.filename().string())),
               {path});
 }
@@ -156,6 +159,11 @@ Recording LoadRecording(const std::filesystem::path& path, const LoadOptions& op
   }
   const MotionFormat* format = FindMotionFormat(path);
   if (format == nullptr || format->load == nullptr) {
+    if (EqualsIgnoringCase(path.extension().string(), ".asf")) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  "is a skeleton, which does not move; name a motion that it belongs to (.amc)",
+                  {path});
+    }
     throw Error(ErrorCode::kInvalidArgument,
                 fmt::format("{} files cannot be read as motion; those that can: {}",
                             Quoted(path.extension().string()), Extensions(&MotionFormat::load)),
@@ -180,6 +188,14 @@ void SaveRecording(const Recording& recording, const std::filesystem::path& path
                             Quoted(path.extension().string()), Extensions(&MotionFormat::save)),
                 {path});
   }
+  const bool has_places = recording.has_skeleton() || recording.markers.marker_count() > 0;
+  if (!has_places && std::ranges::find(kChannelFormats, format->name) == kChannelFormats.end()) {
+    throw Error(ErrorCode::kMismatch,
+                fmt::format("{} holds neither markers nor a skeleton; formats for analog channels "
+                            "alone are C3D, MOT and STO",
+                            Quoted(recording.path.filename().string())),
+                {path});
+  }
   format->save(recording, path, options, diagnostics);
 }
 
@@ -191,11 +207,11 @@ JointTrajectories StandardJoints(const Recording& recording, Diagnostics& diagno
 }
 
 std::vector<JointSource> FindStandardJoints(const Recording& recording, Diagnostics& diagnostics) {
-  if (!recording.joint_sources.empty()) return recording.joint_sources;
   return NamingTheFile(recording, [&] {
     if (!recording.has_skeleton()) return JointsFromMarkers(recording, diagnostics).sources;
     const Skeleton& skeleton = *recording.motion.skeleton;
-    CheckStandardJoints(skeleton);
+    CheckStandardJoints(skeleton);  // What is known of the file's joints may be too few.
+    if (!recording.joint_sources.empty()) return recording.joint_sources;
     std::vector<JointSource> sources;
     for (int j = 0; j < kStandardJointCount; ++j) {
       const int joint = skeleton.name_map()[static_cast<std::size_t>(j)].trajectory_joint;

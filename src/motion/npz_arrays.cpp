@@ -87,9 +87,7 @@ std::vector<std::int64_t> NpzSource::Integers(std::string_view name, const NpzSh
   return std::visit(
       [&](const auto& items) -> std::vector<std::int64_t> {
         if constexpr (std::is_integral_v<typename std::decay_t<decltype(items)>::value_type>) {
-          std::vector<std::int64_t> integers;
-          for (const auto item : items) integers.push_back(static_cast<std::int64_t>(item));
-          return integers;
+          return std::vector<std::int64_t>(items.begin(), items.end());
         } else {
           Fail(fmt::format("array '{}' holds no whole numbers", name));
         }

@@ -229,6 +229,7 @@ void AddMarkers(const MarkerCloud& markers, const FileWorld& world, NpzTarget& t
   }
   target.AddVectors("positions", {frames, count}, positions, 1 / world.unit_cm);
   std::vector<std::uint8_t> states;
+  states.reserve(markers.states.size());
   for (const MarkerState state : markers.states) states.push_back(static_cast<std::uint8_t>(state));
   target.Add("states", {frames, count}, std::move(states));
 }

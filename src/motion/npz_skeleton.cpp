@@ -122,10 +122,12 @@ std::vector<Joint> TakeBones(NpzSource& source, double unit_cm) {
   std::vector<Joint> joints(count);
   for (std::size_t j = 0; j < count; ++j) {
     Joint& joint = joints[j];
-    if (parents[j] < -1 || parents[j] >= static_cast<std::int64_t>(j) || !offsets[j].allFinite()) {
+    const bool is_after_parent =
+        j == 0 ? parents[j] == -1 : parents[j] >= 0 && parents[j] < static_cast<std::int64_t>(j);
+    if (!is_after_parent || !offsets[j].allFinite()) {
       source.Fail(
           fmt::format("bone {} has the parent {} and the offset ({}, {}, {}); parents come "
-                      "first, by their 0-based index, and the first bone has -1",
+                      "first, by their 0-based index, and the first bone alone has -1",
                       j, parents[j], offsets[j].x(), offsets[j].y(), offsets[j].z()));
     }
     joint.bone_name = names[j];

@@ -65,7 +65,11 @@ JointsByName IndexNames(std::span<const Joint> joints) {
     index.try_emplace(Normalized(name), static_cast<int>(i));
   }
   // The root is also found by its own name; as a bone it may be called otherwise.
-  if (!joints.empty()) index.try_emplace(Normalized(BareJointName(joints[0].name)), 0);
+  if (!joints.empty()) {
+    std::string_view name = BareJointName(joints[0].name);
+    if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+    index.try_emplace(Normalized(name), 0);
+  }
   return index;
 }
 

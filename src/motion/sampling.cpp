@@ -37,4 +37,10 @@ int SampleCount(int frames, double old_rate_hz, double new_rate_hz) {
   return static_cast<int>(samples);
 }
 
+std::int64_t FirstSample(std::int64_t first_frame, double old_rate_hz, double new_rate_hz) {
+  constexpr double kLargest = 1e15;  // Whole numbers beyond are not exact, and no file needs them.
+  const double before = static_cast<double>(first_frame - 1) * new_rate_hz / old_rate_hz;
+  return std::abs(before) < kLargest ? std::llround(before) + 1 : first_frame;
+}
+
 }  // namespace kinebase::internal

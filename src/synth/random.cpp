@@ -23,7 +23,7 @@ std::uint64_t HashText(std::string_view text) {
   return hash;
 }
 
-Random::Random(std::initializer_list<std::uint64_t> keys) : state_(0) {
+Random::Random(std::initializer_list<std::uint64_t> keys) {
   for (const std::uint64_t key : keys)
     state_ = Mix(state_ + kGoldenGamma) ^ Mix(key + kGoldenGamma);
 }

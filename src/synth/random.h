@@ -34,7 +34,7 @@ class Random {
   [[nodiscard]] std::size_t Below(std::size_t count);  // [0, count).
 
  private:
-  std::uint64_t state_;
+  std::uint64_t state_ = 0;
 };
 
 }  // namespace kinebase::internal

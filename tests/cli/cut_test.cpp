@@ -5,6 +5,7 @@
 #include "cli/expectations.h"
 #include "cli/run_program.h"
 #include "cli/synthetic_library.h"
+#include "fmt/format.h"
 #include "kinebase/synth/synthetic_motion.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
@@ -18,7 +19,6 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
 using ::testing::SizeIs;
@@ -69,7 +69,7 @@ TEST_F(TakesToCut, GiveClipsThatShowTheSameJoints) {
     EXPECT_EQ(std::to_string(clip["last_frame"].get<int>()), last);
     const std::string take = clip["source"];
     EXPECT_EQ(RunKinebase({"joints", clip["file"], "--quiet"}).out,
-              RunKinebase({"joints", take + ':' + first + '-' + last, "--quiet"}).out);
+              RunKinebase({"joints", fmt::format("{}:{}-{}", take, first, last), "--quiet"}).out);
   }
 }
 

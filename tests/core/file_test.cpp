@@ -46,6 +46,30 @@ TEST(MappedFile, HoldsTheBytesOfTheFile) {
   EXPECT_EQ(moved.text(), bytes);
 }
 
+// Memory of this process that holds parts of files.
+std::int64_t FileMemory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("RssFile:")) return std::atoll(line.c_str() + 8) * 1024;
+  }
+  return 0;
+}
+
+TEST(MappedFile, GivesBackTheMemoryOfAPartThatCanStillBeRead) {
+  const test::TemporaryFolder folder;
+  std::string bytes;
+  for (int i = 0; bytes.size() < 32'000'000; ++i) bytes += std::to_string(i);
+  test::WriteText(folder.path() / "f", bytes);
+  const MappedFile file(folder.path() / "f");
+  ASSERT_EQ(file.text(), bytes);
+  const std::int64_t before = FileMemory();
+  file.Release(file.text().substr(1, 20'000'000));
+  EXPECT_LT(FileMemory(), before - 16'000'000);
+  file.Release(file.text().substr(30'000'000));
+  file.Release(file.text().substr(5, 0));
+  EXPECT_EQ(file.text(), bytes);
+}
+
 TEST(MappedFile, OpensAnEmptyFile) {
   const test::TemporaryFolder folder;
   test::WriteText(folder.path() / "empty", "");
@@ -154,6 +178,52 @@ TEST(WriteFileDeathTest, LeavesEverythingAsItWasOnAFullDisk) {
   EXPECT_EXIT(WriteWithFullDisk(folder.path()), testing::ExitedWithCode(0), "");
   EXPECT_THAT(NamesIn(folder.path()), ElementsAre("f"));
   EXPECT_EQ(test::ReadText(folder.path() / "f"), "old");
+}
+
+// The first would fit and the second does not: files that belong together come together.
+void WriteTwoWithFullDisk(const fs::path& folder) {
+  const rlimit limit{.rlim_cur = 1000, .rlim_max = 1000};
+  ::signal(SIGXFSZ, SIG_IGN);
+  if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(2);
+  const std::string large(5000, 'x');
+  const FileContents files[] = {{folder / "small", "new"}, {folder / "large", large}};
+  try {
+    WriteFiles(files, Overwrite::kYes);
+    ::_exit(3);
+  } catch (const Error& error) {
+    ::_exit(error.code() == ErrorCode::kIoFailure ? 0 : 4);
+  }
+}
+
+TEST(WriteFilesDeathTest, LeavesEverythingAsItWasOnAFullDisk) {
+  GTEST_FLAG_SET(death_test_style, "fast");
+  const test::TemporaryFolder folder;
+  WriteFile(folder.path() / "small", "old", Overwrite::kNo);
+  EXPECT_EXIT(WriteTwoWithFullDisk(folder.path()), testing::ExitedWithCode(0), "");
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("small"));
+  EXPECT_EQ(test::ReadText(folder.path() / "small"), "old");
+}
+
+TEST(WriteFiles, WritesAllOrNone) {
+  const test::TemporaryFolder folder;
+  const FileContents files[] = {{folder.path() / "a", "1"}, {folder.path() / "b", "2"}};
+  WriteFile(folder.path() / "b", "old", Overwrite::kNo);
+  EXPECT_EQ(test::ErrorOf([&] { WriteFiles(files, Overwrite::kNo); }).code(),
+            ErrorCode::kAlreadyExists);
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("b"));
+  WriteFiles(files, Overwrite::kYes);
+  EXPECT_EQ(test::ReadText(folder.path() / "a"), "1");
+  EXPECT_EQ(test::ReadText(folder.path() / "b"), "2");
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("a", "b"));
+}
+
+// Both names are one file: the second finds it taken, and the first is gone again.
+TEST(WriteFiles, TakeBackWhatHasItsNameAlready) {
+  const test::TemporaryFolder folder;
+  const FileContents files[] = {{folder.path() / "a", "1"}, {folder.path() / "a", "2"}};
+  EXPECT_EQ(test::ErrorOf([&] { WriteFiles(files, Overwrite::kNo); }).code(),
+            ErrorCode::kAlreadyExists);
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre());
 }
 
 TEST(WriteFile, LetsOneOfManyWritersWinWhole) {

@@ -57,6 +57,20 @@ TEST(LineScanner, SaysWhetherTheLastLineIsTerminated) {
   }
 }
 
+TEST(LineScanner, GoesOnBehindLinesThatWereReadInAnotherWay) {
+  LineScanner scanner("a\nbb\ncc\nd");
+  ASSERT_TRUE(scanner.Next());
+  EXPECT_EQ(scanner.rest(), "bb\ncc\nd");
+  scanner.Skip(6, 2);
+  EXPECT_EQ(scanner.line_number(), 3);
+  EXPECT_TRUE(scanner.line_is_terminated());
+  ASSERT_TRUE(scanner.Next());
+  EXPECT_EQ(scanner.line(), "d");
+  EXPECT_EQ(scanner.line_number(), 4);
+  EXPECT_FALSE(scanner.line_is_terminated());
+  EXPECT_EQ(scanner.rest(), "");
+}
+
 RC_GTEST_PROP(LineScanner, GivesBackTheLinesOfAnyTextWhateverEndsThem, ()) {
   const auto line = rc::gen::container<std::string>(rc::gen::elementOf(std::string("ab \t#1.")));
   const auto lines = *rc::gen::container<std::vector<std::string>>(line);

@@ -52,6 +52,33 @@ TEST(AmcReader, ReadsEveryField) {
   EXPECT_THAT(amc.diagnostics, IsEmpty());
 }
 
+// Frames like the first are read as a whole, others line by line.
+TEST(AmcReader, ReadsFramesInTheOrderOfTheFirstAsItReadsOthers) {
+  std::string same = ":DEGREES\n";
+  std::string other = same;
+  for (int frame = 1; frame <= 50; ++frame) {
+    const std::string a = fmt::format("a {} -{}.25\n", frame, frame);
+    const std::string ab = fmt::format("ab\t{}e-3  .5 \r\n", frame);
+    same += fmt::format("{}\n{}{}", frame, a, ab);
+    other += frame == 1 ? fmt::format("1\n{}{}", a, ab) : fmt::format("{} \n{}{}", frame, ab, a);
+  }
+  const AmcMotion motion = Parse(same, true);
+  EXPECT_EQ(motion, Parse(other, true));
+  EXPECT_EQ(motion.frame_count(), 50);
+  EXPECT_THAT(motion.Frame(49), ElementsAre(50, -50.25, .05, .5));
+  EXPECT_EQ(ErrorAt(same + "51\na 1 1\nab 1 x\n", "ab 1 x"),
+            "a value of bone 'ab' is not a number: 'x'");
+}
+
+TEST(AmcReader, ReadsFrameNumbersAsFarAsTheyGo) {
+  EXPECT_THAT(Parse("-1\na 1\n\n0\na 2\n").frame_numbers, ElementsAre(-1, 0));
+  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
+  EXPECT_THAT(Parse("9223372036854775806\na 1\n9223372036854775807\na 2\n").frame_numbers,
+              ElementsAre(kLargest - 1, kLargest));
+  EXPECT_THAT(ErrorAt("9223372036854775807\na 1\n-9223372036854775808\na 2\n", "-9"),
+              HasSubstr("must grow"));
+}
+
 TEST(AmcReader, TakesAnyLineEndTabsBlanksAndAByteOrderMark) {
   const AmcMotion expected = Parse(kArmAmc);
   for (const char* ending : {"\r\n", "\r", "\n\n\n"}) {

@@ -12,33 +12,33 @@
 
 namespace kinebase::test {
 
-inline constexpr std::string_view kArmBvh = R"(HIERARCHY
-ROOT Base Plate
-{
-	OFFSET 0 0 0
-	CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
-	JOINT rig:Upper
-	{
-		OFFSET 0 10 0
-		CHANNELS 3 Yrotation Xrotation Zrotation
-		End Site
-		{
-			OFFSET 0 5.5 0
-		}
-	}
-	JOINT Slide
-	{
-		OFFSET 3 0 -1
-		CHANNELS 1 Xposition
-	}
-}
-MOTION
-Frames: 3
-Frame Time: 0.0083333
-1 2 3 10 20 30 40 50 60 7
-1.5 2.5 3.5 11 21 31 41 51 61 7.5
--2 3 4 12 22 32 42 52 62 8
-)";
+inline constexpr std::string_view kArmBvh =
+    "HIERARCHY\n"
+    "ROOT Base Plate\n"
+    "{\n"
+    "\tOFFSET 0 0 0\n"
+    "\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+    "\tJOINT rig:Upper\n"
+    "\t{\n"
+    "\t\tOFFSET 0 10 0\n"
+    "\t\tCHANNELS 3 Yrotation Xrotation Zrotation\n"
+    "\t\tEnd Site\n"
+    "\t\t{\n"
+    "\t\t\tOFFSET 0 5.5 0\n"
+    "\t\t}\n"
+    "\t}\n"
+    "\tJOINT Slide\n"
+    "\t{\n"
+    "\t\tOFFSET 3 0 -1\n"
+    "\t\tCHANNELS 1 Xposition\n"
+    "\t}\n"
+    "}\n"
+    "MOTION\n"
+    "Frames: 3\n"
+    "Frame Time: 0.0083333\n"
+    "1 2 3 10 20 30 40 50 60 7\n"
+    "1.5 2.5 3.5 11 21 31 41 51 61 7.5\n"
+    "-2 3 4 12 22 32 42 52 62 8\n";
 
 inline std::vector<std::string> AnyUnknownLines() {
   std::vector<std::string> lines;

@@ -84,7 +84,7 @@ struct RawC3d {
     Record(-id, name, rest, offset);
   }
 
-  void Parameter(int group, std::string_view name, int type, std::vector<int> dimensions,
+  void Parameter(int group, std::string_view name, int type, const std::vector<int>& dimensions,
                  const std::string& values, int offset = -1, std::string_view description = "") {
     std::string rest{static_cast<char>(type), static_cast<char>(dimensions.size())};
     for (const int dimension : dimensions) rest += static_cast<char>(dimension);
@@ -159,10 +159,13 @@ struct RawC3d {
     const auto put = [&](double value, double step) {
       data += is_float ? n.Real(value) : n.Word(static_cast<int>(std::lround(value / step)));
     };
-    const std::size_t samples = static_cast<std::size_t>(channel_count * subframe_count);
+    const auto samples =
+        static_cast<std::size_t>(channel_count) * static_cast<std::size_t>(subframe_count);
     for (int frame = 0; frame < frame_count(); ++frame) {
       for (int i = 0; i < point_count; ++i) {
-        const RawPoint& point = points[static_cast<std::size_t>(frame * point_count + i)];
+        const RawPoint& point =
+            points[static_cast<std::size_t>(frame) * static_cast<std::size_t>(point_count) +
+                   static_cast<std::size_t>(i)];
         put(point.x, scale);
         put(point.y, scale);
         put(point.z, scale);

@@ -17,7 +17,6 @@ namespace {
 
 using test::ErrorOf;
 using test::RawC3d;
-using test::RawPoint;
 using test::TwoFrames;
 
 bool HasDiagnostic(const C3dRecording& c3d, std::string_view part) {

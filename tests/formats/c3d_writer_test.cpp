@@ -31,7 +31,7 @@ C3dRecording Counting(std::size_t frames, std::size_t points = 2) {
       c3d.points.push_back({static_cast<float>(f), static_cast<float>(p), 1, 0x0102});
     }
     for (std::size_t i = 0; i < 6; ++i) {
-      c3d.analog.push_back(static_cast<float>(100 * f + 10 * (i / 2) + i % 2));
+      c3d.analog.push_back(static_cast<float>(100 * f + (i / 2) * 10 + i % 2));
     }
   }
   SetParameter(c3d, "POINT", IntegerParameter("FRAMES", 0));
@@ -96,7 +96,7 @@ TEST(C3dWriter, HoldsMoreParametersThanItsBlockCountCanTell) {
     SetParameter(c3d, "LOTS", TextParameter("TEXT" + std::to_string(i), std::string(255, 'x')));
   }
   SetParameter(c3d, "LOTS",
-               {.name = "BIG", .dimensions = {255, 255}, .values = std::string(255 * 255, 'y')});
+               {.name = "BIG", .dimensions = {255, 255}, .values = std::string(65'025, 'y')});
   const C3dRecording again = ParseC3d(FormatC3d(c3d), "lots.c3d");
   EXPECT_EQ(FindParameter(again, "LOTS", "BIG")->size(), 255 * 255);
   EXPECT_EQ(again.points, c3d.points);
@@ -129,13 +129,13 @@ TEST(C3dWriter, RefusesWhatAFileCannotHold) {
               c.groups[0].parameters[0].dimensions = {2};
             }).find("POINT:FRAMES has 1 values"),
             std::string::npos);
-  EXPECT_NE(refused([](auto& c) {
-              SetParameter(c, "X",
-                           {.name = "BIG",
-                            .dimensions = {255, 255, 2},
-                            .values = std::string(255 * 255 * 2, 'y')});
-            }).find("'BIG' takes 130058 bytes"),
-            std::string::npos);
+  EXPECT_NE(
+      refused([](auto& c) {
+        SetParameter(
+            c, "X",
+            {.name = "BIG", .dimensions = {255, 255, 2}, .values = std::string(130'050, 'y')});
+      }).find("'BIG' takes 130058 bytes"),
+      std::string::npos);
   EXPECT_NE(refused([](auto& c) { c.header_events.resize(19); }).find("18 events"),
             std::string::npos);
   EXPECT_NE(refused([](auto& c) { c.header_events = {{.label = "12345"}}; }).find("'12345'"),

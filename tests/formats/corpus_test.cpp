@@ -11,6 +11,13 @@
 #include "kinebase/formats/amc.h"
 #include "kinebase/formats/asf.h"
 #include "kinebase/formats/bvh.h"
+#include "kinebase/formats/c3d.h"
+#include "kinebase/formats/csm.h"
+#include "kinebase/formats/mat.h"
+#include "kinebase/formats/mnm.h"
+#include "kinebase/formats/npz.h"
+#include "kinebase/formats/sto.h"
+#include "kinebase/formats/trc.h"
 #include "support/files.h"
 
 namespace kinebase {
@@ -64,6 +71,61 @@ TEST(BvhCorpus, IsReadOrRefusedAsItsNamesSay) {
   Replay("bvh", [](const auto& path) {
     const BvhMotion bvh = ReadBvh(path);
     EXPECT_EQ(ParseBvh(FormatBvh(bvh), path), bvh);
+  });
+}
+
+TEST(C3dCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("c3d", [](const auto& path) {
+    const C3dRecording c3d = ReadC3d(path);
+    EXPECT_EQ(ParseC3d(FormatC3d(c3d), path), c3d);
+  });
+}
+
+TEST(CsmCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("csm", [](const auto& path) {
+    const CsmRecording csm = ReadCsm(path);
+    EXPECT_EQ(ParseCsm(FormatCsm(csm), path), csm);
+  });
+}
+
+TEST(MnmCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("mnm", [](const auto& path) {
+    const MarkerNames names = ReadMnm(path);
+    EXPECT_EQ(ParseMnm(FormatMnm(names), path), names);
+  });
+}
+
+TEST(TrcCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("trc", [](const auto& path) {
+    const TrcRecording trc = ReadTrc(path);
+    EXPECT_EQ(ParseTrc(FormatTrc(trc), path), trc);
+  });
+}
+
+TEST(StoCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("sto", [](const auto& path) {
+    const StoTable table = ReadSto(path);
+    EXPECT_EQ(ParseSto(FormatSto(table), path), table);
+  });
+}
+
+TEST(MatCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("mat", [](const auto& path) {
+    const MatFile mat = ReadMat(path);
+    EXPECT_EQ(ParseMat(FormatMat(mat), path), mat);
+  });
+}
+
+// Archives, and the single arrays that the fuzz target takes.
+TEST(NpzCorpus, IsReadOrRefusedAsItsNamesSay) {
+  Replay("npz", [](const auto& path) {
+    if (path.extension() == ".npz") {
+      const NpzArchive archive = ReadNpz(path);
+      EXPECT_EQ(ParseNpz(FormatNpz(archive), path), archive);
+    } else {
+      const NpzArray array = ParseNpy(test::ReadText(path), "array", path);
+      EXPECT_EQ(ParseNpy(FormatNpy(array), "array", path), array);
+    }
   });
 }
 

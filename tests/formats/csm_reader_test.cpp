@@ -21,7 +21,6 @@ using test::LineOf;
 using test::With;
 using testing::Contains;
 using testing::ElementsAre;
-using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::NanSensitiveDoubleEq;

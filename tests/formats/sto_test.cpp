@@ -100,7 +100,8 @@ TEST(StoReader, RefusesWhatIsNoTable) {
 
 TEST(StoWriter, GivesBackWhatWasRead) {
   for (const std::string_view text :
-       {kAngles, kTurns, std::string_view("a=b\nfree\n=c\nendheader\ntime\n"),
+       {kAngles, kTurns, std::string_view("\v\xEF\xBB\xBFwalk\nendheader\ntime\n"),
+        std::string_view("a=b\nfree\n=c\nendheader\ntime\n"),
         std::string_view("free\n=c=d\nendheader\ntime a\n1 2\n"),
         std::string_view("DataType=vec3\nx\nendheader\ntime\ta\n-0\tinf,nan,1e-300\n")}) {
     const StoTable table = Parse(text);

@@ -312,6 +312,7 @@ TEST_F(ThreeCuts, StopForNothingThatIsWrongWithOthers) {
   const CutReport report = Cut(text);
   EXPECT_THAT(report.clips, SizeIs(6));
   std::vector<std::string> messages;
+  messages.reserve(report.failures.size());
   for (const CutFailure& failure : report.failures) messages.emplace_back(failure.error.what());
   EXPECT_THAT(messages,
               UnorderedElementsAre(

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "fmt/format.h"
 #include "kinebase/motion/motion_file.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
@@ -59,6 +60,7 @@ class FileMoves : public testing::Test {
 
   static std::vector<std::string> Messages(const MovePlan& plan) {
     std::vector<std::string> messages;
+    messages.reserve(plan.obstacles.size());
     for (const Error& obstacle : plan.obstacles) messages.emplace_back(obstacle.what());
     return messages;
   }
@@ -157,7 +159,7 @@ TEST_F(Sorting, TakesTheFoldersNameFromWhereItIsTold) {
       EXPECT_THAT(plan.left, ElementsAre(root() / file));
       EXPECT_THAT(plan.moves, IsEmpty());
     } else {
-      EXPECT_THAT(Moves(plan), ElementsAre(file + " > " + folder + '/' + file));
+      EXPECT_THAT(Moves(plan), ElementsAre(fmt::format("{0} > {1}/{0}", file, folder)));
     }
     fs::remove(root() / file);
   }
@@ -242,18 +244,20 @@ TEST_F(Renaming, OfANameWithoutExtensionMeansAllItsMotionFiles) {
 }
 
 TEST_F(Renaming, CanBeRunAgainAfterAnInterruption) {
-  Write({"a.amc", "b.amc", "c.amc", "c.c3d", "d.amc"});
-  const std::string table = "old,new\na.amc,x.amc\nb.amc,y.amc\nc,z\nd,w.amc\n";
+  Write({"a.amc", "b.amc", "c.amc", "c.c3d", "d.amc", "notes.txt", "todo"});
+  const std::string table =
+      "old,new\na.amc,x.amc\nb.amc,y.amc\nc,z\nd,w.amc\nnotes.txt,n.md\ntodo,done\n";
   const MovePlan plan = RenameBy(table);
-  ASSERT_THAT(plan.moves, SizeIs(5));
+  ASSERT_THAT(plan.moves, SizeIs(7));
   for (std::size_t made = 0; made < plan.moves.size(); ++made) {
     EXPECT_THAT(ApplyMoves(std::span(plan.moves).subspan(made, 1)), IsEmpty());
     const MovePlan rest = RenameBy(table);
     EXPECT_THAT(Messages(rest), IsEmpty());
     EXPECT_THAT(rest.moves, SizeIs(plan.moves.size() - made - 1));
   }
-  EXPECT_THAT(Files(), ElementsAre("w.amc < d.amc", "x.amc < a.amc", "y.amc < b.amc",
-                                   "z.amc < c.amc", "z.c3d < c.c3d"));
+  EXPECT_THAT(Files(),
+              ElementsAre("done < todo", "n.md < notes.txt", "w.amc < d.amc", "x.amc < a.amc",
+                          "y.amc < b.amc", "z.amc < c.amc", "z.c3d < c.c3d"));
 }
 
 struct BadTable {

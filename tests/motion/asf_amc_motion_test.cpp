@@ -178,7 +178,7 @@ TEST(BuildMotion, ReadsAFileWhoseJointsWereAllForcedToThreeDofs) {
   const auto original = LoadRecording(test::TestData("data/cmu/131/131_04.amc"));
   const auto forced =
       LoadRecording(test::TestData("data/quirks/asfamc/131_04_FORCE-ALL-JOINTS-BE-3DOF.amc"),
-                 {.skeleton = original.skeleton_path});
+                    {.skeleton = original.skeleton_path});
   EXPECT_LE(test::LargestDistance(ForwardKinematics(CutMotion(forced.motion, 0, 0)),
                                   ForwardKinematics(CutMotion(original.motion, 0, 0))),
             1e-6);

@@ -142,7 +142,7 @@ TEST(ApproximateJoints, KnowsOtherNamesAndSubjects) {
     if (label == "LFWT") label = "LASI";
     if (label == "RBWT") label = "rpsi";
     if (label == "LHEE") label = "LHEL";
-    label = "Some One:" + label;
+    label.insert(0, "Some One:");
   }
   EXPECT_EQ(JointsOf(other).positions_cm, JointsOf(cloud).positions_cm);
 }
@@ -182,6 +182,23 @@ TEST(ApproximateJoints, NamesWhatIsMissing) {
             ErrorCode::kMismatch);
 }
 
+TEST(ApproximateJoints, SaysWhenNothingCanBeMissing) {
+  Diagnostics diagnostics;
+  const auto message = [&](const MarkerCloud& cloud) {
+    const Error error =
+        test::ErrorOf([&] { (void)ApproximateJoints(cloud, BuiltInMarkerSets(), diagnostics); });
+    EXPECT_EQ(error.code(), ErrorCode::kMismatch);
+    return error.message();
+  };
+  MarkerCloud cloud = Person(6);
+  std::ranges::fill(cloud.states, MarkerState::kMissing);
+  EXPECT_EQ(message(cloud), "no marker is there in any frame");
+  cloud = Person(6);
+  for (auto& label : cloud.labels) label.insert(0, "M");
+  EXPECT_THAT(message(cloud), HasSubstr("no set knows any of their names; --names F.mnm"));
+  EXPECT_EQ(message({.rate_hz = 120, .frame_count = 3}), "there are no markers");
+}
+
 TEST(ApproximateJoints, TakePointsThatAreTheJointsAsTheyAre) {
   const Motion motion = test::SmoothMotion(test::FigureSkeleton(), 7, 20, 120);
   const JointTrajectories all = ForwardKinematics(motion);
@@ -203,7 +220,7 @@ TEST(ApproximateJoints, TakePointsThatAreTheJointsAsTheyAre) {
 
 TEST(ApproximateJoints, SayWhenThereAreSeveralSubjects) {
   MarkerCloud cloud = Person(8);
-  for (auto& label : cloud.labels) label = (label == "LKNE" ? "b:" : "a:") + label;
+  for (auto& label : cloud.labels) label.insert(0, label == "LKNE" ? "b:" : "a:");
   Diagnostics diagnostics;
   (void)ApproximateJoints(cloud, BuiltInMarkerSets(), diagnostics);
   ASSERT_EQ(diagnostics.size(), 1);

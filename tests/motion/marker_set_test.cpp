@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "support/files.h"
 
@@ -20,7 +21,7 @@ std::string SetText(const std::string& head, const std::string& replaced = "") {
   for (int j = 0; j < kStandardJointCount; ++j) {
     const std::string name(ToString(static_cast<StandardJoint>(j)));
     if (replaced.find('"' + name + '"') != std::string::npos) continue;
-    text += "[[joint]]\nname = \"" + name + "\"\nmarkers = [\"" + name + "\"]\n";
+    text += fmt::format("[[joint]]\nname = \"{0}\"\nmarkers = [\"{0}\"]\n", name);
   }
   return text + replaced;
 }

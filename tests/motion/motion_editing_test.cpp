@@ -140,7 +140,7 @@ RC_GTEST_PROP(MirrorMotion, MirrorsEveryJointOfASymmetricFigure, ()) {
 TEST(MirrorMotion, MirrorsARealFigureUpToTheDifferencesOfItsSides) {
   KINEBASE_NEEDS_TEST_DATA();
   const Motion motion = LoadRecording(test::TestData("data/hdm05/cut_amc/throwBasketball/"
-                                                  "HDM_bd_throwBasketball_001_120.amc"))
+                                                     "HDM_bd_throwBasketball_001_120.amc"))
                             .motion;
   const Skeleton& skeleton = *motion.skeleton;
   // However the chain from the root bends, its end is off by at most the sum of the differences.

@@ -28,10 +28,12 @@ class PngReader {
     const int column = static_cast<int>(x * kPngScale);
     const int row = static_cast<int>(y * kPngScale);
     std::uint32_t dot = 0;
-    std::memcpy(&dot,
-                cairo_image_surface_get_data(surface_.get()) +
-                    row * cairo_image_surface_get_stride(surface_.get()) + 4 * column,
-                sizeof dot);
+    std::memcpy(
+        &dot,
+        cairo_image_surface_get_data(surface_.get()) +
+            static_cast<std::ptrdiff_t>(row) * cairo_image_surface_get_stride(surface_.get()) +
+            static_cast<std::ptrdiff_t>(4) * column,
+        sizeof dot);
     return {static_cast<std::uint8_t>(dot >> 16 & 0xFF), static_cast<std::uint8_t>(dot >> 8 & 0xFF),
             static_cast<std::uint8_t>(dot & 0xFF)};
   }

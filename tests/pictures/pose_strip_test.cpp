@@ -30,7 +30,6 @@ using test::ErrorOf;
 using test::SvgElement;
 using test::SvgReader;
 using testing::Contains;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr int kBonesDrawn = 22;  // 23, but for the one that the head covers.

@@ -70,7 +70,7 @@ TEST_P(ScanKernel, CountsUpToSixtyFourMismatches) {
   TemplateMatrix matrix;
   matrix.rate_hz = 30;
   matrix.feature_count = 64;
-  matrix.values.assign(64 * 3, 1.0);
+  matrix.values.assign(192, 1.0);
   matrix.weights = {1.25, 0.8, 1.1};
   const QuantizedTemplate motion_template = Quantize(matrix, 0, Profile::kBonn);
   const std::vector<std::uint64_t> recording = {0, ~std::uint64_t{0}, 0, 0, 0, 1};

@@ -68,9 +68,9 @@ TEST(SyntheticLibrary, ReadsBackWithTheSameJoints) {
       ExpectSameJoints(MakeSyntheticClip(name, actor, 0, options.seed), loaded.motion);
     }
     const auto take = MakeSyntheticTake(actor, options.clips_per_take, 0, options.seed);
-    ExpectSameJoints(
-        take.motion,
-        LoadRecording(folder.path() / "takes" / ("SYN_" + actor.name + "_01-01_01_120.amc")).motion);
+    ExpectSameJoints(take.motion, LoadRecording(folder.path() / "takes" /
+                                                ("SYN_" + actor.name + "_01-01_01_120.amc"))
+                                      .motion);
   }
 }
 

@@ -23,6 +23,10 @@ class MappedFile {
 
   [[nodiscard]] std::string_view text() const { return {data_, size_}; }
 
+  // Gives back the memory of a part of the text that has been read. It can still be read, and is
+  // then fetched from the file again.
+  void Release(std::string_view part) const;
+
  private:
   const char* data_ = nullptr;
   std::size_t size_ = 0;

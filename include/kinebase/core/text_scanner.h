@@ -9,6 +9,10 @@
 
 namespace kinebase {
 
+// UTF-8's, which some programs write first. A reader takes the first one for it, also where a name
+// begins with one.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 // Walks over the lines of a text: LF, CRLF or CR; a UTF-8 byte order mark is skipped.
 class LineScanner {
  public:
@@ -21,6 +25,11 @@ class LineScanner {
   [[nodiscard]] std::int64_t line_number() const { return line_number_; }  // 1-based.
   // Whether the line ended with LF or CR (false only for a last line cut off at the text's end).
   [[nodiscard]] bool line_is_terminated() const { return terminated_; }
+
+  // What follows the current line, and a way past its first `bytes`, which hold `lines` whole
+  // lines: for readers that have a faster way for the usual form.
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+  void Skip(std::size_t bytes, std::int64_t lines);
 
  private:
   std::string_view rest_;

@@ -51,7 +51,8 @@ struct TakeFeatures {
 };
 
 // Reads one take, or a stretch of it, and extracts its features.
-// Errors  Those of LoadRecording and StandardJoints; InvalidArgument for a stretch that leaves the take.
+// Errors  Those of LoadRecording and StandardJoints; InvalidArgument for a stretch that leaves the
+// take.
 [[nodiscard]] TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
                                             double rate_hz, const LoadOptions& options);
 

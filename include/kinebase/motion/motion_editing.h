@@ -12,6 +12,7 @@ namespace kinebase {
 // Another rate: positions linear, rotations along the shortest arc between neighbours.
 //
 // Sample i stands for time i / rate_hz; the result has ⌊(frames − 1) · rate_hz / old⌋ + 1 frames.
+// The number of its first frame is the one that comes nearest to the same time.
 // Errors  InvalidArgument if rate_hz is not positive, the motion has no rate, or the result would
 //         have more frames than fit an int.
 [[nodiscard]] Motion ResampleMotion(const Motion& motion, double rate_hz);
