@@ -69,10 +69,12 @@ int Run(const ConvertOptions& options) {
   CheckWritable(options.output, options.common.overwrite());
   Recording recording = LoadStretch(stretch, options.common.load);
   PrintDiagnostics(options.common, stretch.file, recording.diagnostics);
-  if (options.rate_hz > 0 && options.rate_hz != recording.rate_hz()) {
-    recording = ResampleRecording(recording, options.rate_hz);
-  }
   Diagnostics lost;
+  if (options.rate_hz > 0 && options.rate_hz != recording.rate_hz()) {
+    const auto told = static_cast<std::ptrdiff_t>(recording.diagnostics.size());
+    recording = ResampleRecording(recording, options.rate_hz);
+    lost.assign(recording.diagnostics.begin() + told, recording.diagnostics.end());
+  }
   SaveRecording(recording, options.output, ToSaveOptions(options), lost);
   PrintLosses(options, lost);
   const std::filesystem::path skeleton = SkeletonBeside(options.output);

@@ -5,6 +5,7 @@
 
 #include "fmt/format.h"
 #include "fmt/ranges.h"
+#include "kinebase/core/text_scanner.h"
 
 namespace kinebase::cli {
 namespace {
@@ -63,7 +64,7 @@ Lines Describe(const C3dRecording& c3d) {
 
 Lines Describe(const CsmRecording& csm) {
   Lines lines = {
-      {"recorded", fmt::format("{} {}", csm.capture_date, csm.capture_time)},
+      {"recorded", std::string(Trim(csm.capture_date + ' ' + csm.capture_time))},
       {"performer", csm.actor},
       {"comments", fmt::format("{}", fmt::join(csm.comments, "; "))},
   };

@@ -126,7 +126,7 @@ void ReadFrames(const char* from, C3dRecording& recording,
   recording.points.reserve(recording.frame_count * recording.point_count);
   recording.analog.reserve(recording.frame_count * samples);
   // Bytes that are done with take no memory beside the numbers that they became.
-  constexpr std::size_t kPart = std::size_t{1} << 20;
+  constexpr std::size_t kPart = std::size_t{1} << 18;
   const std::size_t frames_in_part = kPart / (16 * recording.point_count + 4 * samples + 1) + 1;
   WithCodec(recording.processor, [&](auto codec) {
     for (std::size_t done = 0; done < recording.frame_count; done += frames_in_part) {

@@ -12,6 +12,7 @@
 #include "kinebase/core/units.h"
 #include "kinebase/motion/asf_amc_motion.h"
 #include "kinebase/motion/kinematics.h"
+#include "motion/point_writing.h"
 
 namespace kinebase {
 namespace {
@@ -87,9 +88,22 @@ std::vector<AsfDof> ToAsfDofs(const std::vector<Dof>& dofs) {
   return result;
 }
 
-AsfBone ToAsfBone(const Joint& joint, int id) {
+// Bones as the files can name them: one word, no comment and no keyword, none twice.
+// diagnostics  Those that change.
+std::vector<std::string> WritableNames(const Skeleton& skeleton, Diagnostics& diagnostics) {
+  std::vector<std::string> names;
+  for (const Joint& joint : skeleton.joints()) {
+    const std::string& name = joint.bone_name;
+    const bool is_keyword = name.starts_with(':') || EqualsIgnoringCase(name, "begin") ||
+                            EqualsIgnoringCase(name, "end");
+    names.push_back(is_keyword ? "_" + name : name);
+  }
+  return internal::WritableLabels(names, " #", '_', diagnostics);
+}
+
+AsfBone ToAsfBone(const Joint& joint, int id, const std::string& name) {
   AsfBone bone{.id = id,
-               .name = joint.bone_name,
+               .name = name,
                .direction = ToArray(joint.direction),
                .length = joint.length_cm / kWrittenCmPerUnit,
                .axis = ToArray(joint.axis_rad / kRadiansPerDegree),
@@ -116,13 +130,15 @@ AsfSkeleton ToAsf(const Skeleton& skeleton) {
                   .root_axis = std::string(ToString(root.euler_order)),
                   .root_position = ToArray(skeleton.root_position_cm() / kWrittenCmPerUnit),
                   .root_orientation = ToArray(skeleton.root_orientation_rad() / kRadiansPerDegree)};
+  Diagnostics ignored;  // ToAmc says them.
+  const std::vector<std::string> names = WritableNames(skeleton, ignored);
   for (int i = 0; i < skeleton.joint_count(); ++i) {
-    const Joint& joint = skeleton.joints()[static_cast<std::size_t>(i)];
-    if (i > 0) asf.bones.push_back(ToAsfBone(joint, i));
+    const auto bone = static_cast<std::size_t>(i);
+    if (i > 0) asf.bones.push_back(ToAsfBone(skeleton.joints()[bone], i, names[bone]));
     if (skeleton.children(i).empty()) continue;
-    AsfSkeleton::Family family{.parent = joint.bone_name};
+    AsfSkeleton::Family family{.parent = names[bone]};
     for (const int child : skeleton.children(i)) {
-      family.children.push_back(skeleton.joints()[static_cast<std::size_t>(child)].bone_name);
+      family.children.push_back(names[static_cast<std::size_t>(child)]);
     }
     asf.hierarchy.push_back(std::move(family));
   }
@@ -135,10 +151,12 @@ AmcMotion ToAmc(const Motion& motion, Diagnostics& diagnostics) {
   AmcMotion amc{
       .header = {"# " + ToShortestText(motion.rate_hz) + " fps", ":FULLY-SPECIFIED", ":DEGREES"},
       .angle_unit = AmcAngleUnit::kDegrees};
+  const std::vector<std::string> names = WritableNames(skeleton, diagnostics);
   for (const int joint : skeleton.animated()) {
-    const Joint& bone = skeleton.joints()[static_cast<std::size_t>(joint)];
-    amc.bones.push_back({bone.bone_name, amc.column_count, bone.dofs.size()});
-    amc.column_count += bone.dofs.size();
+    const auto bone = static_cast<std::size_t>(joint);
+    const std::size_t dofs = skeleton.joints()[bone].dofs.size();
+    amc.bones.push_back({names[bone], amc.column_count, dofs});
+    amc.column_count += dofs;
   }
   for (int frame = 0; frame < motion.frame_count; ++frame) {
     amc.frame_numbers.push_back(motion.first_frame + frame);

@@ -11,7 +11,9 @@
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/rig_mapping.h"
 #include "motion/file_formats.h"
+#include "motion/name_map.h"
 
 namespace kinebase::internal {
 namespace {
@@ -94,6 +96,10 @@ Recording LoadAsfAmc(const std::filesystem::path& path, const LoadOptions& optio
     skeleton = BuildSkeleton(asf, build, from_skeleton);
   } catch (const Error& error) {
     throw Error(error.code(), error.message(), {loaded.skeleton_path});
+  }
+  if (!NamesStandardJoints(skeleton->joints())) {
+    RigMapping mapping = MapRigByTopology(skeleton->joints());
+    loaded.joint_sources = std::move(mapping.sources);
   }
   for (Diagnostic& diagnostic : from_skeleton) {
     // Lines are those of the motion file; the skeleton's are named in the text.

@@ -10,6 +10,8 @@
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/units.h"
+#include "kinebase/motion/rig_mapping.h"
+#include "motion/name_map.h"
 
 namespace kinebase {
 namespace {
@@ -283,6 +285,20 @@ bool HasTranslation(const BoneColumns& bone) {
   return bone.joint != 0 && !std::ranges::all_of(bone.dofs, IsRotation);
 }
 
+// Where bones have other names than in HDM05 and CMU (as in a skeleton that came from BVH), the
+// shape of the tree tells the standard joints; empty where it does not, either.
+std::optional<Skeleton::NameMap> MapOtherNames(std::span<const Joint> joints,
+                                               Diagnostics& diagnostics) {
+  if (internal::NamesStandardJoints(joints)) return std::nullopt;
+  const RigMapping mapping = MapRigByTopology(joints);
+  const auto knee = static_cast<std::size_t>(StandardJoint::kLknee);
+  if (mapping.sources[knee].match != JointMatch::kTopology) return std::nullopt;
+  diagnostics.push_back({Severity::kInfo,
+                         "few bones have names that are known; the standard joints are told by the "
+                         "shape of the skeleton"});
+  return mapping.name_map;
+}
+
 }  // namespace
 
 double CentimetresPerUnit(const AsfSkeleton& asf, LengthReading reading) {
@@ -330,10 +346,11 @@ std::shared_ptr<const Skeleton> BuildSkeleton(const AsfSkeleton& asf,
                         .angle_is_degrees = asf.angle_is_degrees,
                         .documentation = asf.documentation};
   const double to_rad = asf.angle_is_degrees ? kRadiansPerDegree : 1;
-  return std::make_shared<const Skeleton>(SkeletonBuilder(asf, cm_per_unit, diagnostics).Build(),
-                                          std::move(source),
-                                          Eigen::Vector3d(asf.root_position.data()) * cm_per_unit,
-                                          Eigen::Vector3d(asf.root_orientation.data()) * to_rad);
+  std::vector<Joint> joints = SkeletonBuilder(asf, cm_per_unit, diagnostics).Build();
+  const auto name_map = MapOtherNames(joints, diagnostics);
+  return std::make_shared<const Skeleton>(
+      std::move(joints), std::move(source), Eigen::Vector3d(asf.root_position.data()) * cm_per_unit,
+      Eigen::Vector3d(asf.root_orientation.data()) * to_rad, name_map);
 }
 
 Motion BuildMotion(const AmcMotion& amc, const AsfSkeleton& asf,

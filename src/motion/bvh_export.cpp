@@ -9,6 +9,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/core/units.h"
 #include "kinebase/motion/bvh_motion.h"
+#include "motion/name_map.h"
 
 namespace kinebase {
 namespace {
@@ -89,7 +90,7 @@ class BvhBuilder {
 
   BvhMotion Build() {
     AddRoot();
-    if (skeleton_.source().file_type == "BVH" && SiblingsTurnAlike(motion_)) {
+    if (HasJointNames() && SiblingsTurnAlike(motion_)) {
       AddJointsOfBvh();
     } else {
       AddBones();
@@ -103,6 +104,13 @@ class BvhBuilder {
   }
 
  private:
+  // Whether bones are named after the joints where they end: not as in an ASF of its own, but as in
+  // one that was written from a BVH file.
+  bool HasJointNames() const {
+    return skeleton_.source().file_type == "BVH" ||
+           !internal::NamesStandardJoints(skeleton_.joints());
+  }
+
   const Joint& BoneOf(int joint) const { return skeleton_.joints()[At(joint)]; }
 
   std::array<double, 3> Offset(const Eigen::Vector3d& offset_cm) const {

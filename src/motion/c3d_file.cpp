@@ -12,6 +12,7 @@
 #include "kinebase/motion/csm_motion.h"
 #include "motion/file_formats.h"
 #include "motion/point_writing.h"
+#include "motion/record_loss.h"
 
 namespace kinebase::internal {
 namespace {
@@ -105,6 +106,9 @@ Recording LoadC3d(const std::filesystem::path& path, const LoadOptions& options)
 void SaveC3d(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
   C3dRecording c3d = RecordToWrite(recording, options, diagnostics);
+  const bool has_own_record =
+      recording.record && std::holds_alternative<C3dRecording>(*recording.record);
+  if (!has_own_record) ReportRecordLoss(recording, "C3D", diagnostics);
   if (!options.marker_names.empty()) {
     const MarkerNames names = ReadMarkerNames(options.marker_names, false, diagnostics);
     std::vector<std::string> labels;

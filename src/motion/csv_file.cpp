@@ -12,6 +12,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "motion/file_formats.h"
 #include "motion/motion_world.h"
+#include "motion/point_writing.h"
 #include "motion/record_loss.h"
 
 namespace kinebase::internal {
@@ -81,6 +82,7 @@ void SaveCsv(const Recording& recording, const std::filesystem::path& path,
   const double unit_cm = options.units.empty() ? 1 : CentimetresInOrFail(options.units, path);
   const Eigen::Matrix3d turn = ToYUp(options.up_axis.value_or(UpAxis::kY)).transpose();
   CheckWritable(path, options.overwrite);
+  ReportFilledSamples(recording.markers, "CSV", diagnostics);
   ReportRecordLoss(recording, "CSV", diagnostics);
   const MarkerCloud points = PointsOf(recording, diagnostics);
   std::string text = Header(ColumnNames(points.labels, diagnostics));

@@ -60,7 +60,11 @@ Fields NodeOf(const Skeleton& skeleton, int index, double unit_cm) {
   const Joint& joint = skeleton.joints()[static_cast<std::size_t>(index)];
   std::vector<std::string> dofs;
   dofs.reserve(joint.dofs.size());
-  for (const Dof dof : joint.dofs) dofs.emplace_back(ToString(static_cast<AsfDof>(dof)));
+  for (const Dof dof : joint.dofs) {
+    const std::string_view name = ToString(static_cast<AsfDof>(dof));
+    // As HDM05's ASF files write them: the root's in capitals, those of bones not.
+    dofs.push_back(index == 0 ? std::string(name) : ToLower(name));
+  }
   return {{"children", Indices(skeleton.children(index))},
           {"jointName", MatText(joint.name)},
           {"boneName", MatText(joint.bone_name)},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "kinebase/motion/marker_joints.h"
 #include "kinebase/motion/motion_editing.h"
 #include "motion/file_formats.h"
+#include "motion/record_loss.h"
 
 namespace kinebase {
 namespace {
@@ -66,6 +68,29 @@ Recording WithoutRecord(const Recording& recording) {
   copy.joint_sources = recording.joint_sources;
   copy.diagnostics = recording.diagnostics;
   return copy;
+}
+
+CsmRecording CutCsm(CsmRecording csm, int first, int last) {
+  const auto keep = [&](auto& items, std::size_t per_frame) {
+    const auto begin = items.begin() + static_cast<std::ptrdiff_t>(per_frame) * first;
+    const auto end = items.begin() + static_cast<std::ptrdiff_t>(per_frame) * (last + 1);
+    items = {begin, end};
+  };
+  keep(csm.frame_numbers, 1);
+  keep(csm.values, csm.marker_count() * 3);
+  return csm;
+}
+
+// The record of the frames first … last, where it holds more than places and names.
+std::shared_ptr<const FileRecord> CutRecord(const Recording& recording, int first, int last) {
+  if (recording.record == nullptr) return nullptr;
+  if (const auto* c3d = std::get_if<C3dRecording>(recording.record.get())) {
+    return std::make_shared<const FileRecord>(CutC3d(*c3d, first, last));
+  }
+  if (const auto* csm = std::get_if<CsmRecording>(recording.record.get())) {
+    return std::make_shared<const FileRecord>(CutCsm(*csm, first, last));
+  }
+  return nullptr;
 }
 
 MarkerJoints JointsFromMarkers(const Recording& recording, Diagnostics& diagnostics) {
@@ -229,6 +254,7 @@ Recording CutRecording(const Recording& recording, int first, int last) {
     cut.motion = CutMotion(recording.motion, first, last);
   } else {
     cut.markers = CutMarkers(recording.markers, first, last);
+    cut.record = CutRecord(recording, first, last);
   }
   return cut;
 }
@@ -240,6 +266,7 @@ Recording ResampleRecording(const Recording& recording, double rate_hz) {
   } else {
     result.markers = ResampleMarkers(recording.markers, rate_hz);
   }
+  internal::ReportRecordLoss(recording, "a recording at another rate", result.diagnostics);
   return result;
 }
 

@@ -40,6 +40,12 @@ std::array<NameMapEntry, kStandardJointCount> BuildNameMap(std::span<const Joint
   return map;
 }
 
+bool NamesStandardJoints(std::span<const Joint> joints) {
+  const auto named = std::ranges::count_if(
+      BuildNameMap(joints), [](const NameMapEntry& entry) { return entry.trajectory_joint > 0; });
+  return named * 2 >= kStandardJointCount - 1;  // The root is always there.
+}
+
 std::string TrajectoryBoneName(StandardJoint joint) {
   const CsvTable& table = NameMapTable();
   for (const auto& row : table.rows) {

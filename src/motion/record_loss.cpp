@@ -22,8 +22,13 @@ std::vector<std::string> ContentsOf(const FileRecord& record) {
     if (plates > 0) contents.push_back(fmt::format("{} force plates", plates));
     contents.emplace_back("residuals");
   }
-  if (const auto* csm = std::get_if<CsmRecording>(&record); csm != nullptr && csm->talent) {
-    contents.emplace_back("the performer's sizes");
+  if (const auto* csm = std::get_if<CsmRecording>(&record)) {
+    if (csm->talent) contents.emplace_back("the performer's sizes");
+    if (!csm->actor.empty()) contents.emplace_back("the performer's name");
+    if (!csm->capture_date.empty() || !csm->capture_time.empty()) {
+      contents.emplace_back("date and time");
+    }
+    if (!csm->comments.empty()) contents.emplace_back("comments");
   }
   return contents;
 }

@@ -9,7 +9,7 @@
 namespace kinebase::internal {
 
 // diagnostics  One if the record has something that files of `format` have no place for: analog
-//              channels, events, residuals, sizes of the performer.
+//              channels, events, residuals, the performer's sizes, comments.
 void ReportRecordLoss(const Recording& recording, std::string_view format,
                       Diagnostics& diagnostics);
 

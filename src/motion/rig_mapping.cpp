@@ -227,16 +227,8 @@ int NextJoint(const Assignment& assignment, StandardJoint joint) {
   return -1;
 }
 
-}  // namespace
-
-std::string_view BareJointName(std::string_view name) {
-  const std::size_t colon = name.find_last_of(':');
-  return colon == std::string_view::npos || colon + 1 == name.size() ? name
-                                                                     : name.substr(colon + 1);
-}
-
-RigMapping MapRig(std::span<const Joint> joints) {
-  TableMatch table = BestTable(joints);
+// What the table leaves open, by topology, else the nearest.
+RigMapping Complete(TableMatch table, std::span<const Joint> joints) {
   Assignment& assignment = table.joints;
   const auto by_topology = internal::MapByTopology(joints);
   for (std::size_t j = 0; j < assignment.size(); ++j) {
@@ -267,5 +259,17 @@ RigMapping MapRig(std::span<const Joint> joints) {
   }
   return mapping;
 }
+
+}  // namespace
+
+std::string_view BareJointName(std::string_view name) {
+  const std::size_t colon = name.find_last_of(':');
+  return colon == std::string_view::npos || colon + 1 == name.size() ? name
+                                                                     : name.substr(colon + 1);
+}
+
+RigMapping MapRig(std::span<const Joint> joints) { return Complete(BestTable(joints), joints); }
+
+RigMapping MapRigByTopology(std::span<const Joint> joints) { return Complete({}, joints); }
 
 }  // namespace kinebase

@@ -313,6 +313,25 @@ TEST(RealRecordings, AreConvertedWithTheirNumbersAndWithoutAChange) {
             RunKinebase({"joints", take + ":10-20", "--quiet"}).out);
 }
 
+TEST(RealRecordings, KeepTheirChannelsInAStretchAndSayThatARateHasNone) {
+  KINEBASE_NEEDS_TEST_DATA();
+  const SyntheticLibrary library;
+  const std::string gait = TestData("data/c3d/btk/PiG/PiG_Motion-FlatFoot-One.c3d");
+  const std::string clip = library.scratch() / "clip.c3d";
+  EXPECT_EQ(RunKinebase({"convert", gait + ":100-199", clip, "--quiet"}).exit_code, 0);
+  const auto info = RunKinebase({"info", clip, "--json", "--quiet"}).Json()["files"][0];
+  EXPECT_EQ(info["first_frame"], 441);  // The take begins at 342.
+  EXPECT_EQ(info["contents"]["analog_channels"].size(), 38);
+  EXPECT_EQ(info["contents"]["force_plates"].size(), 2);
+  // Of its eight events those between 4.4 s and 5.4 s.
+  EXPECT_EQ(info["contents"]["events"].size(), 3);
+
+  const ProgramResult slow =
+      RunKinebase({"convert", gait, library.scratch() / "slow.c3d", "--rate", "50"});
+  EXPECT_THAT(slow.err, HasSubstr("another rate has no place for: 38 analog channels, 8 events, 2 "
+                                  "force plates, residuals"));
+}
+
 TEST(RealRecordings, WithChannelsAloneGoWhereThoseCanBe) {
   KINEBASE_NEEDS_TEST_DATA();
   const SyntheticLibrary library;

@@ -198,6 +198,30 @@ std::set<std::string> FieldsOf(const MatFile& mat, std::string_view variable) {
   return {found->fields.begin(), found->fields.end()};
 }
 
+// q and -q are one rotation. 4 × frames each, or empty.
+void ExpectSameRotations(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  ASSERT_EQ(a.cols(), b.cols());
+  for (Eigen::Index frame = 0; frame < a.cols(); ++frame) {
+    EXPECT_LE(std::min((a.col(frame) - b.col(frame)).norm(), (a.col(frame) + b.col(frame)).norm()),
+              1e-9);
+  }
+}
+
+// Up to full turns; of three, (x, y, z) is also (x + 180°, 180° − y, z + 180°).
+void ExpectSameAngles(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const auto difference = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+    return (x - y).unaryExpr([](double d) { return std::abs(std::remainder(d, 360)); }).maxCoeff();
+  };
+  for (Eigen::Index frame = 0; a.rows() > 0 && frame < a.cols(); ++frame) {
+    double least = difference(a.col(frame), b.col(frame));
+    if (a.rows() == 3) {
+      const Eigen::Vector3d flipped(a(0, frame) + 180, 180 - a(1, frame), a(2, frame) + 180);
+      least = std::min(least, difference(flipped, b.col(frame)));
+    }
+    EXPECT_LE(least, 1e-6) << frame;
+  }
+}
+
 TEST_F(ArrayFile, OfMatlabHasTheFieldsAndValuesOfTheOriginal) {
   KINEBASE_NEEDS_TEST_DATA();
   ForEachOriginal([&](const std::filesystem::path& file, const Recording& amc) {
@@ -227,9 +251,13 @@ TEST_F(ArrayFile, OfMatlabHasTheFieldsAndValuesOfTheOriginal) {
       SCOPED_TRACE(a.bone_names[j]);
       const auto difference = (a.trajectories_inch[j] - b.trajectories_inch[j]).eval();
       EXPECT_LE(difference.cwiseAbs().maxCoeff(), 1e-9);
-      EXPECT_EQ(a.quaternions[j].cols(), b.quaternions[j].cols());
-      EXPECT_EQ(a.euler_degrees[j].rows(), b.euler_degrees[j].rows());
-      EXPECT_EQ(a.euler_degrees[j].cols(), b.euler_degrees[j].cols());
+      ExpectSameRotations(a.quaternions[j], b.quaternions[j]);
+      ASSERT_EQ(a.euler_degrees[j].rows(), b.euler_degrees[j].rows());
+      ASSERT_EQ(a.euler_degrees[j].cols(), b.euler_degrees[j].cols());
+      ExpectSameAngles(a.euler_degrees[j], b.euler_degrees[j]);
+      EXPECT_EQ(a.nodes[j].dofs, b.nodes[j].dofs);
+      // Theirs is as long as seven digits of text make it.
+      EXPECT_LE((a.nodes[j].direction - b.nodes[j].direction).norm(), 1e-6);
       EXPECT_EQ(a.nodes[j].children, b.nodes[j].children);
       EXPECT_EQ(a.nodes[j].parent, b.nodes[j].parent);
       EXPECT_LE((a.nodes[j].offset_inch - b.nodes[j].offset_inch).norm(), 1e-9);

@@ -104,13 +104,28 @@ TEST_F(RecordingLimits, RefuseUnitsThatNobodyKnows) {
   }
 }
 
-TEST_F(RecordingLimits, TellWhatARecordHoldsThatHasNoPlace) {
+// Two frames, the second with an event, and two analog channels that count on.
+C3dRecording WithChannels() {
   C3dRecording c3d = test::C3dOf({"C7"}, {{{1, 2, 3}}, {{1, 2, 4}}});
   c3d.channel_count = 2;
   c3d.subframe_count = 1;
-  c3d.analog.assign(4, 1);
+  c3d.analog = {1, 2, 3, 4};
   SetEvents(c3d, std::vector<C3dEvent>{{.time_s = .01, .label = "Foot Strike"}});
-  test::WriteText(PathOf("a.c3d"), FormatC3d(c3d));
+  return c3d;
+}
+
+CsmRecording WithSizes() {
+  return {.actor = "Ada",
+          .comments = {"Feet left."},
+          .rate_hz = 60,
+          .talent = CsmTalent{CsmTalent::Unit::kMillimetres, {{"head", 200}}},
+          .labels = {"C7"},
+          .frame_numbers = {7, 8, 9},
+          .values = {1, 2, 3, 4, 5, 6, 7, 8, 9}};
+}
+
+TEST_F(RecordingLimits, TellWhatARecordHoldsThatHasNoPlace) {
+  test::WriteText(PathOf("a.c3d"), FormatC3d(WithChannels()));
   const Recording loaded = LoadRecording(PathOf("a.c3d"));
   for (const char* file : {"a.trc", "a.csm", "a.csv", "a.npz", "a.mat"}) {
     Save(loaded, file);
@@ -121,13 +136,59 @@ TEST_F(RecordingLimits, TellWhatARecordHoldsThatHasNoPlace) {
   }
 }
 
-TEST(CutRecording, KeepsFrameNumbersAndLeavesTheRecordBehind) {
+TEST_F(RecordingLimits, TellWhatACsmHoldsThatHasNoPlace) {
+  test::WriteText(PathOf("a.csm"), FormatCsm(WithSizes()));
+  const Recording loaded = LoadRecording(PathOf("a.csm"));
+  for (const char* file : {"a.c3d", "a.trc", "a.csv", "a.npz", "a.mat"}) {
+    Save(loaded, file);
+    EXPECT_THAT(Messages(diagnostics_),
+                Contains(AllOf(HasSubstr("has no place for"), HasSubstr("the performer's sizes"),
+                               HasSubstr("the performer's name"), HasSubstr("comments"))))
+        << file;
+  }
+}
+
+TEST_F(RecordingLimits, TellThatFilledSamplesLookLikeMeasuredOnes) {
+  Recording filled = Markers();
+  filled.markers.states[1] = MarkerState::kFilled;
+  for (const char* file : {"a.trc", "a.csm", "a.csv"}) {
+    Save(filled, file);
+    EXPECT_THAT(Messages(diagnostics_), Contains(HasSubstr("1 are written like these"))) << file;
+  }
+}
+
+TEST_F(RecordingLimits, LetAStretchOfAC3dKeepWhatBelongsToItsFrames) {
+  test::WriteText(PathOf("a.c3d"), FormatC3d(WithChannels()));
+  const Recording again =
+      SaveAndLoad(CutRecording(LoadRecording(PathOf("a.c3d")), 1, 1), "cut.c3d");
+  EXPECT_THAT(diagnostics_, testing::IsEmpty());
+  const auto& c3d = std::get<C3dRecording>(*again.record);
+  EXPECT_EQ(c3d.first_frame, 2);
+  EXPECT_THAT(c3d.analog, testing::ElementsAre(3, 4));
+  EXPECT_EQ(Events(c3d).size(), 1);
+  EXPECT_EQ(c3d.point(0, 0), WithChannels().point(1, 0));  // Residual and cameras too.
+  const Recording before = CutRecording(LoadRecording(PathOf("a.c3d")), 0, 0);
+  EXPECT_TRUE(Events(std::get<C3dRecording>(*before.record)).empty());
+}
+
+TEST_F(RecordingLimits, LetAStretchOfACsmKeepWhoMoved) {
+  test::WriteText(PathOf("a.csm"), FormatCsm(WithSizes()));
+  const Recording again =
+      SaveAndLoad(CutRecording(LoadRecording(PathOf("a.csm")), 1, 2), "cut.csm");
+  const auto& csm = std::get<CsmRecording>(*again.record);
+  EXPECT_EQ(csm.actor, "Ada");
+  EXPECT_EQ(csm.talent, WithSizes().talent);
+  EXPECT_THAT(csm.frame_numbers, testing::ElementsAre(8, 9));
+  EXPECT_THAT(csm.values, testing::ElementsAre(4, 5, 6, 7, 8, 9));
+}
+
+TEST(CutRecording, KeepsFrameNumbersAndWhereTheyCameFrom) {
   Recording whole = Markers();
   whole.format = "C3D";
   whole.units = "mm";
   whole.up_axis = "Z";
   whole.markers.first_frame = 40;
-  whole.record = std::make_shared<const FileRecord>(C3dRecording());
+  whole.record = std::make_shared<const FileRecord>(TrcRecording());
   const Recording cut = CutRecording(whole, 1, 2);
   EXPECT_EQ(cut.record, nullptr);
   EXPECT_EQ(cut.frame_count(), 2);
@@ -148,6 +209,8 @@ TEST(ResampleRecording, TakesTheRateAndLeavesTheRecordBehind) {
   whole.record = std::make_shared<const FileRecord>(C3dRecording());
   const Recording fast = ResampleRecording(whole, 100);
   EXPECT_EQ(fast.record, nullptr);
+  EXPECT_THAT(Messages(fast.diagnostics),
+              Contains(HasSubstr("at another rate has no place for: residuals")));
   EXPECT_EQ(fast.rate_hz(), 100);
   ASSERT_EQ(fast.frame_count(), 5);
   EXPECT_EQ(fast.markers.at(1, 0), Eigen::Vector3d(1.5, 2, 3));

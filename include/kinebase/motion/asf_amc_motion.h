@@ -35,7 +35,8 @@ struct AsfBuildOptions {
 
 // Errors       MalformedFile: unknown Euler order.
 // diagnostics  Which reading of the lengths was taken where the file leaves it open; limits that do
-//              not fit the DOFs (they are left out).
+//              not fit the DOFs (they are left out); standard joints that are told by the shape of
+//              the skeleton, as fewer than half of its bones have the names of HDM05 and CMU.
 [[nodiscard]] std::shared_ptr<const Skeleton> BuildSkeleton(const AsfSkeleton& asf,
                                                             const AsfBuildOptions& options,
                                                             Diagnostics& diagnostics);
@@ -53,7 +54,7 @@ struct AsfBuildOptions {
 [[nodiscard]] AsfSkeleton ToAsf(const Skeleton& skeleton);
 
 // A motion as an AMC in degrees for ToAsf's skeleton. Rotations that a joint's DOFs cannot express
-// are lost; `diagnostics` names those joints.
+// are lost; `diagnostics` names those joints, and bones whose names are no single words.
 [[nodiscard]] AmcMotion ToAmc(const Motion& motion, Diagnostics& diagnostics);
 
 }  // namespace kinebase

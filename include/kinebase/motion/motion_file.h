@@ -142,11 +142,12 @@ void SaveRecording(const Recording& recording, const std::filesystem::path& path
 [[nodiscard]] std::vector<JointSource> FindStandardJoints(const Recording& recording,
                                                           Diagnostics& diagnostics);
 
-// Frames first … last (0-based, inclusive) of what was read. The record does not go along.
+// Frames first … last (0-based, inclusive) of what was read. The record of a C3D or CSM is cut too,
+// so that analog samples, events, residuals and sizes go along; others do not.
 // Errors  InvalidArgument if the range is empty or leaves the recording.
 [[nodiscard]] Recording CutRecording(const Recording& recording, int first, int last);
 
-// Another rate. The record does not go along.
+// Another rate. The record does not go along; what is lost with it is a diagnostic of the result.
 // Errors  InvalidArgument as ResampleMotion.
 [[nodiscard]] Recording ResampleRecording(const Recording& recording, double rate_hz);
 

@@ -37,4 +37,8 @@ struct RigMapping {
 // Cost        O(joints · standard joints).
 [[nodiscard]] RigMapping MapRig(std::span<const Joint> joints);
 
+// The same by topology alone, where names do not tell whether they are those of the places where
+// bones begin or end.
+[[nodiscard]] RigMapping MapRigByTopology(std::span<const Joint> joints);
+
 }  // namespace kinebase
