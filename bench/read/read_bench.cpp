@@ -76,7 +76,7 @@ void TakeNumbers(std::string_view line, std::vector<double>& values) {
 }
 
 std::string_view WithoutFirstWord(std::string_view line) {
-  TakeToken(line);
+  (void)TakeToken(line);
   return line;
 }
 
@@ -235,18 +235,12 @@ void AddC3d(const fs::path& file) {
 fs::path TestData(const fs::path& relative) {
   const char* named = std::getenv("KINEBASE_TEST_DATA");
   const fs::path root = named == nullptr ? fs::path(KINEBASE_SOURCE_DIR) / "../shared" : named;
-  const fs::path file = root / "data" / relative;
+  fs::path file = root / "data" / relative;
   if (!fs::exists(file)) Stop("needs " + file.string() + "; KINEBASE_TEST_DATA names the folder");
   return file;
 }
 
-}  // namespace
-}  // namespace kinebase
-
-int main(int argc, char** argv) {
-  using namespace kinebase;
-  benchmark::Initialize(&argc, argv);
-  const MadeUpFiles long_files;
+void AddAll(const MadeUpFiles& long_files) {
   for (const char* name :
        {"cmu/135/135_02.amc", "bvh/misc/Boxing_Toes.bvh", "csm/ThomasFechten.csm"}) {
     AddText(TestData(name));
@@ -255,5 +249,14 @@ int main(int argc, char** argv) {
   const fs::path points = TestData("hdm05/take_c3d/HDM_bd_05-01_01_120.c3d");
   AddC3d(points);
   AddC3d(long_files.Make(points));
+}
+
+}  // namespace
+}  // namespace kinebase
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  const kinebase::MadeUpFiles long_files;
+  kinebase::AddAll(long_files);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -143,10 +143,10 @@ TEST_F(Converting, ResamplesAndKeepsTheTime) {
   EXPECT_EQ(Info(half)["rate_hz"], 60);
   const auto all = Joints(squat() + ":51-151");
   const auto every_other = Joints(half);
-  const std::size_t width = 3 * 24;
-  ASSERT_EQ(every_other.size(), 51 * width);
+  constexpr std::size_t kWidth = 72;  // 24 joints × xyz.
+  ASSERT_EQ(every_other.size(), 51 * kWidth);
   for (std::size_t i = 0; i < every_other.size(); ++i) {
-    ASSERT_NEAR(every_other[i], all[i / width * 2 * width + i % width], 1e-3);
+    ASSERT_NEAR(every_other[i], all[i / kWidth * 2 * kWidth + i % kWidth], 1e-3);
   }
   // Frame 51 at 120 Hz is at 50 / 120 s: frame 26 at 60 Hz.
   EXPECT_EQ(Info(half)["first_frame"], 26);
@@ -159,7 +159,8 @@ TEST_F(Converting, ResamplesAndKeepsTheTime) {
 TEST_F(Converting, TurnsAndScalesAsAsked) {
   for (const std::string extension : {".c3d", ".trc", ".bvh"}) {
     for (const std::string units : {"mm", "m", "inch"}) {
-      SCOPED_TRACE(extension + ' ' + units);
+      SCOPED_TRACE(units);
+      SCOPED_TRACE(extension);
       const std::string file =
           Make(squat(), "a" + extension, {"--up", "z", "--units", units, "-f"});
       const std::vector<std::string> told = {"--source-up", "z", "--source-units", units};
