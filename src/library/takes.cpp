@@ -12,11 +12,13 @@
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
+#include "library/files_below.h"
 
 namespace kinebase {
 namespace {
 
 namespace fs = std::filesystem;
+using internal::FilesBelow;
 
 std::string KnownFormats() {
   std::string text;
@@ -36,34 +38,6 @@ std::string JoinPaths(const std::vector<fs::path>& paths) {
   std::string text;
   for (const fs::path& path : paths) text += (text.empty() ? "" : ", ") + path.string();
   return text;
-}
-
-// All regular files below a folder for which `wanted` holds. A folder that is reached twice,
-// through links, is entered once; one that cannot be read is passed over.
-template <typename Wanted>
-std::vector<fs::path> FilesBelow(const fs::path& folder, Wanted wanted) {
-  std::vector<fs::path> files;
-  std::vector<fs::path> open = {folder};
-  std::set<fs::path> entered;
-  while (!open.empty()) {
-    const fs::path current = std::move(open.back());
-    open.pop_back();
-    std::error_code error;
-    const fs::path real = fs::canonical(current, error);
-    if (error || !entered.insert(real).second) continue;
-    // Not a range-based loop: its ++ throws where a folder cannot be read on.
-    for (fs::directory_iterator entry(current, error), end; !error && entry != end;
-         entry.increment(error)) {
-      std::error_code ignored;
-      if (entry->is_directory(ignored)) {
-        open.push_back(entry->path());
-      } else if (entry->is_regular_file(ignored) && wanted(entry->path())) {
-        files.push_back(entry->path());
-      }
-    }
-  }
-  std::ranges::sort(files);
-  return files;
 }
 
 // Where the files of a list are: by name below its folder, then below others.
