@@ -11,6 +11,7 @@
 
 #include "cli/arguments.h"
 #include "fmt/format.h"
+#include "fmt/ranges.h"
 #include "kinebase/core/parallel.h"
 
 namespace kinebase::cli {
@@ -111,11 +112,15 @@ void AddLoadOptions(CLI::App& command, CommonOptions& options) {
           "Axis that points up in the file, where it does not tell or tells wrong")
       ->check(OneOf({"x", "y", "z"}))
       ->type_name("x|y|z");
+  std::vector<std::string> source_units(kLengthUnits.begin(), kLengthUnits.end());
+  source_units.emplace_back(kAcclaimUnit);
   command
       .add_option("--source-units", options.load.units,
-                  "Unit of lengths in the file, where it does not tell or tells wrong")
-      ->check(OneOf({"mm", "cm", "m", "inch"}))
-      ->type_name("mm|cm|m|inch");
+                  fmt::format("Unit of lengths in the file, where it does not tell or tells wrong: "
+                              "{}",
+                              fmt::join(source_units, ", ")))
+      ->check(OneOf(source_units))
+      ->type_name("UNIT");
   command
       .add_option("--names", options.load.marker_names,
                   "Which of the file's names is which marker (MNM)")

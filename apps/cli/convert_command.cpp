@@ -19,6 +19,7 @@ struct ConvertOptions {
   double rate_hz = 0;
   std::string up;
   std::string units;
+  std::filesystem::path write_names;
 };
 
 Json ToJson(const Diagnostics& diagnostics) {
@@ -30,7 +31,9 @@ Json ToJson(const Diagnostics& diagnostics) {
 }
 
 SaveOptions ToSaveOptions(const ConvertOptions& options) {
-  SaveOptions save{.overwrite = options.common.overwrite(), .units = options.units};
+  SaveOptions save{.overwrite = options.common.overwrite(),
+                   .units = options.units,
+                   .marker_names = options.write_names};
   if (!options.up.empty()) save.up_axis = ParseUpAxis(options.up);
   return save;
 }
@@ -118,9 +121,15 @@ void AddConvertCommand(CLI::App& program, int& exit_code) {
                    "Axis that points up in OUT (default: as the format expects, or as it was)")
       ->check(OneOf({"x", "y", "z"}))
       ->type_name("x|y|z");
-  command->add_option("--units", options->units, "Unit of lengths in OUT (default: the same)")
-      ->check(OneOf({"mm", "cm", "m", "inch"}))
-      ->type_name("mm|cm|m|inch");
+  command
+      ->add_option("--units", options->units,
+                   "Unit of lengths in OUT (default: as the format expects, or as it was)")
+      ->check(OneOf({kLengthUnits.begin(), kLengthUnits.end()}))
+      ->type_name("mm|cm|m|inch|ft");
+  command
+      ->add_option("--write-names", options->write_names,
+                   "Names that markers get in OUT (MNM: name of the preset, name in the file)")
+      ->type_name("FILE");
   AddOutputOptions(*command, options->common);
   AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);

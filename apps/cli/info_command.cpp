@@ -1,10 +1,12 @@
 // kinebase info: what is in a file, and what is odd about it.
 
 #include <memory>
+#include <set>
 
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/file_contents.h"
+#include "cli/other_files.h"
 #include "fmt/format.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/library/takes.h"
@@ -22,33 +24,64 @@ struct InfoOptions {
 struct FileInfo {
   std::filesystem::path path;
   std::optional<Recording> recording;
+  std::optional<OtherFile> other;  // Instead of a recording.
   BoundingBox box;
   std::vector<JointSource> joints;  // Where the standard joints are; empty if they are not.
   std::string why_no_joints;
   std::optional<Error> error;
 };
 
-FileInfo Inspect(const std::filesystem::path& path, const LoadOptions& options) {
-  FileInfo info{.path = path};
-  try {
-    Recording& recording = info.recording.emplace(LoadRecording(path, options));
-    info.box = recording.has_skeleton() ? ComputeBoundingBox(ForwardKinematics(recording.motion))
-                                        : ComputeBoundingBox(recording.markers);
-  } catch (const Error& error) {
-    info.recording.reset();
-    info.error = error;
-    return info;
-  } catch (const std::bad_alloc&) {
-    info.recording.reset();
-    info.error = Error(ErrorCode::kIoFailure, "needs more memory than there is", {.file = path});
-    return info;
+// Files that the paths name; a path that names none stands for itself, with the reason.
+std::vector<FileInfo> FindFiles(const std::vector<std::filesystem::path>& paths) {
+  std::vector<FileInfo> files;
+  std::set<std::filesystem::path> seen;
+  const auto add = [&](const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (seen.insert(std::filesystem::weakly_canonical(file, ignored)).second) {
+      files.push_back({.path = file});
+    }
+  };
+  for (const std::filesystem::path& path : paths) {
+    std::error_code unreachable;
+    if (IsOtherFile(path) && !std::filesystem::is_directory(path, unreachable)) {
+      add(path);
+      continue;
+    }
+    try {
+      for (const auto& file : FindMotionFiles(std::span(&path, 1))) add(file);
+    } catch (const Error& error) {
+      files.push_back({.path = path, .error = error});
+    }
   }
+  return files;
+}
+
+void Load(const LoadOptions& options, FileInfo& info) {
+  if (IsOtherFile(info.path)) {
+    info.other = ReadOtherFile(info.path, options);
+    return;
+  }
+  const Recording& recording = info.recording.emplace(LoadRecording(info.path, options));
+  info.box = recording.has_skeleton() ? ComputeBoundingBox(ForwardKinematics(recording.motion))
+                                      : ComputeBoundingBox(recording.markers);
+}
+
+void Inspect(const LoadOptions& options, FileInfo& info) {
+  try {
+    Load(options, info);
+  } catch (const Error& error) {
+    info.error = error;
+  } catch (const std::bad_alloc&) {
+    info.error =
+        Error(ErrorCode::kIoFailure, "needs more memory than there is", {.file = info.path});
+  }
+  if (info.error) info.recording.reset();
+  if (!info.recording) return;
   try {
     info.joints = FindStandardJoints(*info.recording, info.recording->diagnostics);
   } catch (const Error& error) {
     info.why_no_joints = error.message();
   }
-  return info;
 }
 
 Json TextOrNull(const std::string& text) { return text.empty() ? Json() : Json(text); }
@@ -75,7 +108,23 @@ Json ToJson(const std::vector<JointSource>& joints) {
   return list;
 }
 
+// The fields of a recording; those that another file does not have are null.
+Json OtherAsJson(const FileInfo& info) {
+  Json json = {{"path", info.path.string()}, {"format", info.other->format}};
+  for (const char* const field :
+       {"frames", "first_frame", "rate_hz", "duration_s", "joints", "markers", "units", "up_axis",
+        "bounding_box_cm", "actor", "class", "take", "skeleton"}) {
+    json[field] = nullptr;
+  }
+  json["contents"] = info.other->contents;
+  json["standard_joints"] = Json::array();
+  json["no_standard_joints"] = nullptr;
+  json["diagnostics"] = ToJson(info.other->diagnostics);
+  return json;
+}
+
 Json ToJson(const FileInfo& info) {
+  if (info.other) return OtherAsJson(info);
   const Recording& recording = *info.recording;
   const auto corner = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
   return {
@@ -112,12 +161,45 @@ std::string DescribeJoints(const FileInfo& info) {
   return replaced.empty() ? "all found" : "all found; only near: " + replaced;
 }
 
+// Titles and what follows them, one below the other.
+class Description {
+ public:
+  explicit Description(const std::filesystem::path& path)
+      : text_(OnOneLine(path.string()) + '\n') {}
+
+  void Line(std::string_view title, const std::string& value) {
+    if (!value.empty()) text_ += fmt::format("  {:<10}{}\n", title, OnOneLine(value));
+  }
+
+  void Add(const Diagnostics& diagnostics) {
+    for (const Diagnostic& diagnostic : diagnostics) {
+      Line(ToString(diagnostic.severity),
+           diagnostic.line > 0 ? fmt::format("line {}: {}", diagnostic.line, diagnostic.message)
+                               : diagnostic.message);
+    }
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string DescribeOther(const FileInfo& info) {
+  Description description(info.path);
+  description.Line("format", info.other->format);
+  for (const auto& [title, value] : info.other->lines) description.Line(title, value);
+  description.Add(info.other->diagnostics);
+  return description.text();
+}
+
 std::string Describe(const FileInfo& info) {
+  if (info.other) return DescribeOther(info);
   const Recording& recording = *info.recording;
   const Eigen::Vector3d size = info.box.high_cm - info.box.low_cm;
-  std::string text = OnOneLine(info.path.string()) + '\n';
-  const auto line = [&](std::string_view name, const std::string& value) {
-    if (!value.empty()) text += fmt::format("  {:<10}{}\n", name, OnOneLine(value));
+  Description description(info.path);
+  const auto line = [&](std::string_view title, const std::string& value) {
+    description.Line(title, value);
   };
   line("format", std::string(recording.format));
   line("frames",
@@ -139,12 +221,8 @@ std::string Describe(const FileInfo& info) {
   line("skeleton", recording.skeleton_path.string());
   for (const auto& [name, value] : DescribeContents(recording)) line(name, value);
   line("standard", DescribeJoints(info));
-  for (const Diagnostic& diagnostic : recording.diagnostics) {
-    line(ToString(diagnostic.severity),
-         diagnostic.line > 0 ? fmt::format("line {}: {}", diagnostic.line, diagnostic.message)
-                             : diagnostic.message);
-  }
-  return text;
+  description.Add(recording.diagnostics);
+  return description.text();
 }
 
 // Many files, a line each.
@@ -152,30 +230,39 @@ std::string DescribeAll(const std::vector<FileInfo>& files) {
   TextTable table({"file", "format", "actor", "class", ">frames", ">Hz", ">s", ">joints",
                    ">markers", "searchable", ">odd"});
   const auto count = [](int number) { return number > 0 ? std::to_string(number) : ""; };
+  const auto odd_in = [&](const Diagnostics& diagnostics) {
+    return count(static_cast<int>(
+        std::ranges::count(diagnostics, Severity::kWarning, &Diagnostic::severity)));
+  };
   for (const FileInfo& info : files) {
+    if (info.other) {
+      table.Add({info.path.string(), info.other->format, "", "", "", "", "", "", "", "",
+                 odd_in(info.other->diagnostics)});
+    }
     if (!info.recording) continue;
     const Recording& recording = *info.recording;
-    const auto odd =
-        std::ranges::count(recording.diagnostics, Severity::kWarning, &Diagnostic::severity);
     table.Add({info.path.string(), std::string(recording.format), recording.name.actor,
                recording.name.class_name, std::to_string(recording.frame_count()),
                fmt::format("{:g}", recording.rate_hz()),
                fmt::format("{:.2f}", recording.duration_s()), count(recording.motion.joint_count()),
                count(recording.markers.marker_count()), info.why_no_joints.empty() ? "yes" : "no",
-               count(static_cast<int>(odd))});
+               odd_in(recording.diagnostics)});
   }
   return table.ToString();
 }
 
 int Run(const InfoOptions& options) {
-  const auto paths = FindMotionFiles(options.paths);
-  std::vector<FileInfo> files(paths.size());
-  ParallelFor(paths.size(), options.common.threads, "reading", MakeProgress(options.common),
-              [&](std::size_t i) { files[i] = Inspect(paths[i], options.common.load); });
+  std::vector<FileInfo> files = FindFiles(options.paths);
+  std::vector<FileInfo*> to_read;
+  for (FileInfo& info : files) {
+    if (!info.error) to_read.push_back(&info);
+  }
+  ParallelFor(to_read.size(), options.common.threads, "reading", MakeProgress(options.common),
+              [&](std::size_t i) { Inspect(options.common.load, *to_read[i]); });
   Json list = Json::array();
   Json failed = Json::array();
   for (const FileInfo& info : files) {
-    if (info.recording) {
+    if (!info.error) {
       if (options.common.json) list.push_back(ToJson(info));
       continue;
     }
@@ -197,8 +284,9 @@ int Run(const InfoOptions& options) {
 
 void AddInfoCommand(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = program.add_subcommand("info", "What is in motion files");
-  command->add_option("PATH", options->paths, "Files or folders")->required();
+  CLI::App* command = program.add_subcommand("info", "What is in a file");
+  command->add_option("PATH", options->paths, "Files of any format, or folders with motion files")
+      ->required();
   AddOutputOptions(*command, options->common);
   AddThreadsOption(*command, options->common);
   AddLoadOptions(*command, options->common);

@@ -14,6 +14,7 @@
 #include "kinebase/motion/rig_mapping.h"
 #include "motion/file_formats.h"
 #include "motion/name_map.h"
+#include "motion/record_loss.h"
 
 namespace kinebase::internal {
 namespace {
@@ -81,6 +82,12 @@ void TellRate(double rate_hz, const std::filesystem::path& path, AmcMotion& amc)
 
 Recording LoadAsfAmc(const std::filesystem::path& path, const LoadOptions& options) {
   Recording loaded{.path = path, .format = "ASF/AMC", .name = ParseTakeName(path)};
+  if (options.up_axis || !options.units.empty()) {
+    loaded.diagnostics.push_back(
+        {Severity::kWarning,
+         "the skeleton tells the unit of an AMC, and Y is up: --source-units and --source-up are "
+         "not followed; --asf-length says how the skeleton's unit is meant"});
+  }
   AcclaimRecord record{.amc = ReadAmc(path, {.strict = options.strict})};
   loaded.skeleton_path = options.skeleton.empty() ? FindSkeleton(path) : options.skeleton;
   record.asf = ReadAsf(loaded.skeleton_path);
@@ -140,6 +147,7 @@ void SaveAsfAmc(const Recording& recording, const std::filesystem::path& path,
                              ? *kept
                              : AcclaimRecord{.asf = ToAsf(*recording.motion.skeleton),
                                              .amc = ToAmc(recording.motion, diagnostics)};
+  ReportRecordLoss(recording, "ASF/AMC", diagnostics, {Extra::kSkeletonSource});
   TellRate(recording.rate_hz(), path, record.amc);
   const std::string asf_text = FormatAsf(record.asf);
   const std::string amc_text = FormatAmc(record.amc);

@@ -78,7 +78,7 @@ class BvhBuilder {
   BvhBuilder(const Motion& motion, const BvhWriteOptions& options)
       : motion_(motion),
         skeleton_(*motion.skeleton),
-        units_per_cm_(1 / CentimetresPerUnit(options.units)),
+        units_per_cm_(1 / CentimetresInOrFail(options.units)),
         from_y_up_(ToYUp(options.up_axis).transpose()),
         turn_(from_y_up_),
         stretches_(skeleton_.joints().size(), false) {
@@ -250,10 +250,6 @@ BvhMotion ToBvh(const Motion& motion, const BvhWriteOptions& options, Diagnostic
   const auto& joints = motion.skeleton->joints();
   if (std::ranges::any_of(joints, [](const Joint& joint) { return !joint.limits.empty(); })) {
     say("BVH has no place for the limits of degrees of freedom; they are left out");
-  }
-  if (motion.first_frame != 1) {
-    say(fmt::format("BVH counts frames from 1; that this one's first is number {} is left out",
-                    motion.first_frame));
   }
   if (const double read = SnapRate(bvh.frame_time_s); std::abs(read / motion.rate_hz - 1) > 1e-9) {
     say(fmt::format("a rate of {:g} Hz reads as {:g} Hz where readers round the frame time",

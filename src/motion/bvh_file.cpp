@@ -7,6 +7,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/motion/bvh_motion.h"
 #include "motion/file_formats.h"
+#include "motion/record_loss.h"
 
 namespace kinebase::internal {
 namespace {
@@ -18,8 +19,8 @@ const BvhMotion* RecordOf(const Recording& recording) {
 
 bool WantsOtherWorld(const Recording& recording, const SaveOptions& options) {
   const bool other_axis = options.up_axis && ToString(*options.up_axis) != recording.up_axis;
-  const bool other_units = !options.units.empty() &&
-                           CentimetresPerUnit(options.units) != CentimetresPerUnit(recording.units);
+  const bool other_units =
+      !options.units.empty() && CentimetresIn(options.units) != CentimetresIn(recording.units);
   return other_axis || other_units;
 }
 
@@ -94,10 +95,7 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
   RequireSkeleton(recording, "BVH", path);
   const BvhMotion* record = RecordOf(recording);
-  if (record != nullptr && !WantsOtherWorld(recording, options)) {
-    WriteFile(path, FormatRecord(*record, recording.rate_hz(), diagnostics), options.overwrite);
-    return;
-  }
+  ReportRecordLoss(recording, "BVH", diagnostics);
   BvhWriteOptions write;
   if (record != nullptr) {
     write.units = recording.units;
@@ -105,7 +103,19 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
   }
   if (!options.units.empty()) write.units = options.units;
   if (options.up_axis) write.up_axis = *options.up_axis;
+  if (write.up_axis == UpAxis::kX) ReportUntold({.up = write.up_axis}, "BVH", diagnostics);
+  if (recording.first_frame() != 1) {
+    diagnostics.push_back(
+        {Severity::kInfo,
+         fmt::format("BVH counts frames from 1; that this one's first is number {} is left out",
+                     recording.first_frame())});
+  }
+  if (record != nullptr && !WantsOtherWorld(recording, options)) {
+    WriteFile(path, FormatRecord(*record, recording.rate_hz(), diagnostics), options.overwrite);
+    return;
+  }
   BvhMotion bvh = ToBvh(recording.motion, write, diagnostics);
+  if (record != nullptr) ReportRecordLoss(recording, "BVH in another world", diagnostics);
   if (record != nullptr) SetFrameTime(*record, recording.rate_hz(), bvh);
   WriteFile(path, FormatBvh(bvh), options.overwrite);
 }

@@ -86,18 +86,6 @@ void BringToOurWorld(RawFigure& figure, UpAxis up, double cm_per_unit, SkeletonS
 
 }  // namespace
 
-double CentimetresPerUnit(const std::string& units) {
-  const std::size_t slash = units.find('/');
-  const auto centimetres = CentimetresIn(std::string_view(units).substr(0, slash));
-  const auto divisor = slash == std::string::npos
-                           ? std::optional<double>(1)
-                           : ParseDouble(Trim(std::string_view(units).substr(slash + 1)));
-  if (centimetres && divisor && *divisor > 0 && *divisor < 1e9) return *centimetres / *divisor;
-  throw Error(ErrorCode::kInvalidArgument, "unknown unit of length " + Quoted(units) +
-                                               "; known: mm, cm, m, inch, ft, and parts of them "
-                                               "such as 'inch / 0.45'");
-}
-
 BvhFigure BuildFigure(const BvhMotion& bvh, const BvhBuildOptions& options,
                       Diagnostics& diagnostics) {
   RawFigure raw;
@@ -118,7 +106,7 @@ BvhFigure BuildFigure(const BvhMotion& bvh, const BvhBuildOptions& options,
   figure.up_axis = options.up_axis ? *options.up_axis : internal::GuessUpAxis(raw, diagnostics);
   figure.units = options.units.empty() ? internal::GuessUnits(raw, figure.up_axis, diagnostics)
                                        : options.units;
-  BringToOurWorld(raw, figure.up_axis, CentimetresPerUnit(figure.units), source);
+  BringToOurWorld(raw, figure.up_axis, CentimetresInOrFail(figure.units), source);
   figure.motion = std::move(raw.motion);
   return figure;
 }

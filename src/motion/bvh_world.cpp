@@ -20,10 +20,6 @@ constexpr double kSmallestStatureCm = 120;
 constexpr double kLargestStatureCm = 220;
 constexpr int kSampledFrames = 200;
 
-// Units in which figures are found; no stature is human in two of them. CMU's conversions kept the
-// numbers of the ASF, inches / 0.45.
-constexpr std::array<std::string_view, 6> kUnits = {"cm", "inch", "inch / 0.45", "m", "mm", "ft"};
-
 int TrajectoryJoint(const RawFigure& figure, StandardJoint joint) {
   return figure.rig.name_map[static_cast<std::size_t>(joint)].trajectory_joint;
 }
@@ -147,8 +143,10 @@ void ReportMissingBones(const RawFigure& figure, Diagnostics& diagnostics) {
 
 std::string GuessUnits(const RawFigure& figure, UpAxis up, Diagnostics& diagnostics) {
   const double stature = EstimateStature(figure, up);
-  for (const std::string_view unit : kUnits) {
-    const double stature_cm = stature * CentimetresPerUnit(std::string(unit));
+  std::vector<std::string_view> units(kLengthUnits.begin(), kLengthUnits.end());
+  units.push_back(kAcclaimUnit);
+  for (const std::string_view unit : units) {  // No stature is human in two of them.
+    const double stature_cm = stature * CentimetresInOrFail(unit);
     if (stature_cm < kSmallestStatureCm || stature_cm > kLargestStatureCm) continue;
     diagnostics.push_back(
         {Severity::kInfo,

@@ -20,10 +20,8 @@ namespace {
 std::string ChooseUnits(const C3dRecording& c3d, const LoadOptions& options,
                         const std::filesystem::path& path, Diagnostics& diagnostics) {
   if (options.units.empty()) return FindUnits(c3d, diagnostics);
-  if (CentimetresIn(options.units)) return options.units;
-  throw Error(ErrorCode::kInvalidArgument,
-              "unknown unit of length " + Quoted(options.units) + "; known: mm, cm, m, inch, ft",
-              {path});
+  (void)CentimetresInOrFail(options.units, path);
+  return options.units;
 }
 
 double RateOf(const C3dRecording& c3d, const LoadOptions& options, Recording& loaded) {
@@ -106,9 +104,7 @@ Recording LoadC3d(const std::filesystem::path& path, const LoadOptions& options)
 void SaveC3d(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
   C3dRecording c3d = RecordToWrite(recording, options, diagnostics);
-  const bool has_own_record =
-      recording.record && std::holds_alternative<C3dRecording>(*recording.record);
-  if (!has_own_record) ReportRecordLoss(recording, "C3D", diagnostics);
+  ReportRecordLoss(recording, "C3D", diagnostics);
   if (!options.marker_names.empty()) {
     const MarkerNames names = ReadMarkerNames(options.marker_names, false, diagnostics);
     std::vector<std::string> labels;

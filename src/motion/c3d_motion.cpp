@@ -240,12 +240,8 @@ MarkerCloud BuildMarkers(const C3dRecording& recording, const C3dBuildOptions& o
 
 C3dRecording ToC3d(const MarkerCloud& markers, const C3dWriteOptions& options,
                    Diagnostics& diagnostics) {
-  const auto cm_per_unit = CentimetresIn(options.units);
-  if (!cm_per_unit) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "unknown unit of length " + Quoted(options.units) + "; known: mm, cm, m, inch, ft");
-  }
-  C3dRecording c3d = StartFrom(markers, options, *cm_per_unit, diagnostics);
+  const double cm_per_unit = CentimetresInOrFail(options.units);
+  C3dRecording c3d = StartFrom(markers, options, cm_per_unit, diagnostics);
   std::vector<std::size_t> places = MatchingPlaces(markers, options.base);
   const std::size_t count = markers.labels.size();
   if (places.empty()) {
@@ -260,7 +256,7 @@ C3dRecording ToC3d(const MarkerCloud& markers, const C3dWriteOptions& options,
   }
   std::vector<std::string> labels = PointLabels(c3d);
   for (std::size_t i = 0; i < count; ++i) labels[places[i]] = markers.labels[i];
-  const Eigen::Matrix3d to_file = ToYUp(options.up).transpose() / *cm_per_unit;
+  const Eigen::Matrix3d to_file = ToYUp(options.up).transpose() / cm_per_unit;
   for (std::size_t frame = 0; count > 0 && frame < c3d.frame_count; ++frame) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t index = frame * count + i;

@@ -75,14 +75,9 @@ Recording LoadCsm(const std::filesystem::path& path, const LoadOptions& options)
   loaded.units = options.units.empty() ? kCsmUnits : std::string_view(options.units);
   const UpAxis up = options.up_axis.value_or(kCsmUp);
   loaded.up_axis = ToString(up);
-  const auto cm_per_unit = CentimetresIn(loaded.units);
-  if (!cm_per_unit) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "unknown unit of length " + Quoted(options.units) + "; known: mm, cm, m, inch, ft",
-                {path});
-  }
-  const CsmBuildOptions build{
-      .rate_hz = RateOf(csm, options, loaded), .cm_per_unit = *cm_per_unit, .up = up};
+  const CsmBuildOptions build{.rate_hz = RateOf(csm, options, loaded),
+                              .cm_per_unit = CentimetresInOrFail(loaded.units, path),
+                              .up = up};
   loaded.markers = BuildMarkers(csm, build, loaded.diagnostics);
   if (!options.marker_names.empty()) {
     const MarkerNames names =
@@ -117,9 +112,7 @@ void SaveCsm(const Recording& recording, const std::filesystem::path& path,
     csm.labels = CustomLabels(csm.labels, names);
   }
   ReportFilledSamples(recording.markers, "CSM", diagnostics);
-  const bool has_own_record =
-      recording.record && std::holds_alternative<CsmRecording>(*recording.record);
-  if (!has_own_record) ReportRecordLoss(recording, "CSM", diagnostics);
+  ReportRecordLoss(recording, "CSM", diagnostics);
   WriteFile(path, FormatCsm(csm), options.overwrite);
 }
 

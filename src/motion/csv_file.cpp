@@ -60,7 +60,7 @@ std::string Header(const std::vector<std::string>& names) {
 void AppendRow(const MarkerCloud& points, int frame, const Eigen::Matrix3d& turn, double unit_cm,
                std::string& text) {
   text += fmt::format("{},", points.first_frame + frame);
-  AppendShortestText(text, frame / points.rate_hz);
+  AppendShortestText(text, static_cast<double>(points.first_frame + frame - 1) / points.rate_hz);
   for (int point = 0; point < points.marker_count(); ++point) {
     if (points.is_missing(frame, point)) {
       text += ",,,";

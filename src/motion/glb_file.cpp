@@ -9,6 +9,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/formats/glb.h"
 #include "motion/file_formats.h"
+#include "motion/record_loss.h"
 
 namespace kinebase::internal {
 namespace {
@@ -160,6 +161,7 @@ void SaveGlb(const Recording& recording, const std::filesystem::path& path,
                 "and --units",
                 {path});
   }
+  ReportRecordLoss(recording, "GLB", diagnostics);
   CheckTimes(recording.motion, path);
   CheckWritable(path, options.overwrite);
   const std::string bytes = FormatGlb(SceneBuilder(recording.motion).Build(path.stem().string()));

@@ -118,17 +118,23 @@ std::vector<Eigen::Vector3d> NeutralPose(const Skeleton& skeleton) {
 
 void CheckStandardJoints(const Skeleton& skeleton) {
   std::string missing;
+  int count = 0;
   for (int j = 0; j < kStandardJointCount; ++j) {
     if (skeleton.name_map()[static_cast<std::size_t>(j)].trajectory_joint >= 0) continue;
     const auto joint = static_cast<StandardJoint>(j);
     missing += fmt::format("{}'{}' (for {})", missing.empty() ? "" : ", ",
                            internal::TrajectoryBoneName(joint), ToString(joint));
+    ++count;
   }
-  if (!missing.empty()) {
-    throw Error(ErrorCode::kMismatch,
-                "the skeleton lacks bones of the standard skeleton: " + missing,
-                {skeleton.source().file_name});
+  if (count == 0) return;
+  std::string message = "the skeleton lacks bones of the standard skeleton: " + missing;
+  if (count > kStandardJointCount / 2) {
+    message = fmt::format(
+        "the skeleton lacks bones for {} of the {} standard joints; it is no person, or has names "
+        "and a shape that are not known",
+        count, kStandardJointCount);
   }
+  throw Error(ErrorCode::kMismatch, message, {skeleton.source().file_name});
 }
 
 JointTrajectories StandardJoints(const Skeleton& skeleton, const JointTrajectories& all_joints) {

@@ -97,11 +97,15 @@ void SaveMat(const Recording& recording, const std::filesystem::path& path,
   const UpAxis up = options.up_axis.value_or(UpAxis::kY);
   const Eigen::Matrix3d turn = ToYUp(up).transpose();
   const std::string file_name = recording.path.filename().string();
-  std::string units(recording.has_skeleton() ? kBoneUnits : kMarkerUnits);
-  if (!options.units.empty()) units = options.units;
+  const std::string_view usual_units = recording.has_skeleton() ? kBoneUnits : kMarkerUnits;
+  const std::string units(options.units.empty() ? usual_units : options.units);
   const double unit_cm = CentimetresInOrFail(units, path);
   CheckWritable(path, options.overwrite);
-  ReportRecordLoss(recording, "MAT", diagnostics);
+  ReportRecordLoss(recording, "MAT", diagnostics, {Extra::kSkeletonSource});
+  Untold untold;
+  if (up != UpAxis::kY) untold.up = up;
+  if (unit_cm != CentimetresInOrFail(usual_units)) untold.units = units;
+  ReportUntold(untold, "MAT", diagnostics);
   MatFile mat;
   if (recording.has_skeleton()) {
     const Motion motion = up == UpAxis::kY ? recording.motion : TurnMotion(recording.motion, turn);

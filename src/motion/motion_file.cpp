@@ -46,6 +46,9 @@ constexpr std::array kFormats = {
 // Formats that are worth writing where there are only analog channels.
 constexpr std::array<std::string_view, 3> kChannelFormats = {"C3D", "MOT", "STO"};
 
+// Formats whose markers may have names of their own.
+constexpr std::array<std::string_view, 3> kMarkerNameFormats = {"C3D", "CSM", "TRC"};
+
 // Extensions of the formats that can be read, or written.
 template <typename Function>
 std::string Extensions(Function MotionFormat::*can) {
@@ -70,27 +73,47 @@ Recording WithoutRecord(const Recording& recording) {
   return copy;
 }
 
-CsmRecording CutCsm(CsmRecording csm, int first, int last) {
-  const auto keep = [&](auto& items, std::size_t per_frame) {
-    const auto begin = items.begin() + static_cast<std::ptrdiff_t>(per_frame) * first;
-    const auto end = items.begin() + static_cast<std::ptrdiff_t>(per_frame) * (last + 1);
-    items = {begin, end};
-  };
-  keep(csm.frame_numbers, 1);
-  keep(csm.values, csm.marker_count() * 3);
+// The frames first … last of what has `per_frame` values a frame.
+template <typename T>
+void Keep(std::vector<T>& items, std::size_t per_frame, int first, int last) {
+  const auto begin = items.begin() + static_cast<std::ptrdiff_t>(per_frame) * first;
+  const auto end = items.begin() + static_cast<std::ptrdiff_t>(per_frame) * (last + 1);
+  items = std::vector<T>(begin, end);
+}
+
+AcclaimRecord Cut(const AcclaimRecord& record, int first, int last) {
+  AcclaimRecord cut{.asf = record.asf, .amc = CutAmc(record.amc, first, last)};
+  // A clip counts from 1, a stretch as the file does.
+  cut.amc.frame_numbers = record.amc.frame_numbers;
+  Keep(cut.amc.frame_numbers, 1, first, last);
+  return cut;
+}
+
+BvhMotion Cut(BvhMotion bvh, int first, int last) {
+  Keep(bvh.values, bvh.column_count, first, last);
+  bvh.declared_frame_count = last - first + 1;
+  return bvh;
+}
+
+C3dRecording Cut(const C3dRecording& c3d, int first, int last) { return CutC3d(c3d, first, last); }
+
+CsmRecording Cut(CsmRecording csm, int first, int last) {
+  Keep(csm.frame_numbers, 1, first, last);
+  Keep(csm.values, csm.marker_count() * 3, first, last);
   return csm;
 }
 
-// The record of the frames first … last, where it holds more than places and names.
-std::shared_ptr<const FileRecord> CutRecord(const Recording& recording, int first, int last) {
-  if (recording.record == nullptr) return nullptr;
-  if (const auto* c3d = std::get_if<C3dRecording>(recording.record.get())) {
-    return std::make_shared<const FileRecord>(CutC3d(*c3d, first, last));
-  }
-  if (const auto* csm = std::get_if<CsmRecording>(recording.record.get())) {
-    return std::make_shared<const FileRecord>(CutCsm(*csm, first, last));
-  }
-  return nullptr;
+TrcRecording Cut(TrcRecording trc, int first, int last) {
+  Keep(trc.frame_numbers, 1, first, last);
+  Keep(trc.times_s, 1, first, last);
+  Keep(trc.values, trc.marker_count() * 3, first, last);
+  return trc;
+}
+
+std::shared_ptr<const FileRecord> CutRecord(const FileRecord& record, int first, int last) {
+  return std::visit(
+      [&](const auto& each) { return std::make_shared<const FileRecord>(Cut(each, first, last)); },
+      record);
 }
 
 MarkerJoints JointsFromMarkers(const Recording& recording, Diagnostics& diagnostics) {
@@ -221,6 +244,13 @@ void SaveRecording(const Recording& recording, const std::filesystem::path& path
                             Quoted(recording.path.filename().string())),
                 {path});
   }
+  if (!options.marker_names.empty() &&
+      std::ranges::find(kMarkerNameFormats, format->name) == kMarkerNameFormats.end()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("{} files do not take the names of an MNM file; C3D, CSM and TRC do",
+                            format->name),
+                {path});
+  }
   format->save(recording, path, options, diagnostics);
 }
 
@@ -254,8 +284,8 @@ Recording CutRecording(const Recording& recording, int first, int last) {
     cut.motion = CutMotion(recording.motion, first, last);
   } else {
     cut.markers = CutMarkers(recording.markers, first, last);
-    cut.record = CutRecord(recording, first, last);
   }
+  if (recording.record != nullptr) cut.record = CutRecord(*recording.record, first, last);
   return cut;
 }
 
@@ -266,7 +296,8 @@ Recording ResampleRecording(const Recording& recording, double rate_hz) {
   } else {
     result.markers = ResampleMarkers(recording.markers, rate_hz);
   }
-  internal::ReportRecordLoss(recording, "a recording at another rate", result.diagnostics);
+  internal::ReportRecordLoss(recording, "a recording at another rate", result.diagnostics,
+                             {internal::Extra::kSkeletonSource});
   return result;
 }
 

@@ -4,10 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "fmt/format.h"
-#include "kinebase/core/error.h"
-#include "kinebase/core/text_scanner.h"
-
 namespace kinebase::internal {
 namespace {
 
@@ -38,12 +34,6 @@ Motion TurnMotion(const Motion& motion, const Eigen::Matrix3d& turn) {
   for (auto& offset : turned.extra_offsets_cm) offset = turn * offset;
   for (auto& local : turned.rotations) local = rotation * local * rotation.conjugate();
   return turned;
-}
-
-double CentimetresInOrFail(const std::string& unit, const std::filesystem::path& path) {
-  if (const auto centimetres = CentimetresIn(unit)) return *centimetres;
-  throw Error(ErrorCode::kInvalidArgument,
-              fmt::format("{} is no unit of length; mm, cm, m and inch are", Quoted(unit)), {path});
 }
 
 }  // namespace kinebase::internal

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
-#include <string>
 
 #include "kinebase/motion/motion.h"
 #include "kinebase/motion/world.h"
@@ -12,9 +10,5 @@ namespace kinebase::internal {
 
 // The same motion seen in a world that is turned: places, bones, their axes and rotations.
 [[nodiscard]] Motion TurnMotion(const Motion& motion, const Eigen::Matrix3d& turn);
-
-// Errors  InvalidArgument, naming `path`, for a unit that is none.
-[[nodiscard]] double CentimetresInOrFail(const std::string& unit,
-                                         const std::filesystem::path& path);
 
 }  // namespace kinebase::internal

@@ -269,7 +269,7 @@ void SaveNpz(const Recording& recording, const std::filesystem::path& path,
   if (!options.units.empty()) world.units = options.units;
   world.unit_cm = CentimetresInOrFail(world.units, path);
   CheckWritable(path, options.overwrite);
-  ReportRecordLoss(recording, "NPZ", diagnostics);
+  ReportRecordLoss(recording, "NPZ", diagnostics, {Extra::kSkeletonSource});
   NpzTarget target;
   target.Add("format", std::string(kFormat));
   target.Add("version", kVersion);

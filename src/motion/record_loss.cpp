@@ -1,47 +1,145 @@
 #include "motion/record_loss.h"
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "fmt/format.h"
 #include "fmt/ranges.h"
+#include "kinebase/core/text_scanner.h"
 
 namespace kinebase::internal {
 namespace {
 
-std::vector<std::string> ContentsOf(const FileRecord& record) {
-  std::vector<std::string> contents;
-  if (const auto* c3d = std::get_if<C3dRecording>(&record)) {
-    if (c3d->channel_count > 0) {
-      contents.push_back(fmt::format("{} analog channels", c3d->channel_count));
-    }
-    const std::size_t events = Events(*c3d).size();
-    if (events > 0) contents.push_back(fmt::format("{} events", events));
-    const std::size_t plates = ForcePlates(*c3d).size();
-    if (plates > 0) contents.push_back(fmt::format("{} force plates", plates));
-    contents.emplace_back("residuals");
+using Contents = std::vector<std::string>;
+using Carried = std::initializer_list<Extra>;
+
+bool Carries(Carried carried, Extra extra) {
+  return std::ranges::find(carried, extra) != carried.end();
+}
+
+// Groups that say how the rest is stored, or whose contents are named one by one.
+bool IsOfTheFormat(std::string_view group) {
+  constexpr std::array<std::string_view, 6> kGroups = {"POINT", "ANALOG",        "FORCE_PLATFORM",
+                                                       "EVENT", "EVENT_CONTEXT", "TRIAL"};
+  return std::ranges::any_of(
+      kGroups, [&](std::string_view each) { return EqualsIgnoringCase(each, group); });
+}
+
+Contents ContentsOf(const C3dRecording& c3d, Carried carried) {
+  Contents contents;
+  if (c3d.channel_count > 0 && !Carries(carried, Extra::kAnalog)) {
+    contents.push_back(fmt::format("{} analog channels", c3d.channel_count));
   }
-  if (const auto* csm = std::get_if<CsmRecording>(&record)) {
-    if (csm->talent) contents.emplace_back("the performer's sizes");
-    if (!csm->actor.empty()) contents.emplace_back("the performer's name");
-    if (!csm->capture_date.empty() || !csm->capture_time.empty()) {
-      contents.emplace_back("date and time");
-    }
-    if (!csm->comments.empty()) contents.emplace_back("comments");
+  const std::size_t events = Events(c3d).size();
+  if (events > 0) contents.push_back(fmt::format("{} events", events));
+  const std::size_t plates = ForcePlates(c3d).size();
+  if (plates > 0 && !Carries(carried, Extra::kForcePlates)) {
+    contents.push_back(fmt::format("{} force plates", plates));
+  }
+  if (c3d.point_count > 0) contents.emplace_back("residuals");
+  Contents groups;
+  for (const C3dGroup& group : c3d.groups) {
+    if (!IsOfTheFormat(group.name) && !group.parameters.empty()) groups.push_back(group.name);
+  }
+  if (!groups.empty()) {
+    contents.push_back(fmt::format("parameters of {}", fmt::join(groups, ", ")));
+  }
+  return contents;
+}
+
+Contents ContentsOf(const CsmRecording& csm, Carried /*carried*/) {
+  Contents contents;
+  if (csm.talent) contents.emplace_back("the performer's sizes");
+  if (!csm.actor.empty()) contents.emplace_back("the performer's name");
+  if (!csm.capture_date.empty() || !csm.capture_time.empty()) {
+    contents.emplace_back("date and time");
+  }
+  if (!csm.comments.empty()) contents.emplace_back("comments");
+  for (const CsmUnknownSection& section : csm.unknown_sections) {
+    contents.push_back('$' + section.title);
+  }
+  return contents;
+}
+
+bool HasUnknownLines(const AsfSkeleton& asf) {
+  return !asf.unknown_units.empty() || !asf.unknown_root.empty() || !asf.unknown_sections.empty() ||
+         std::ranges::any_of(asf.bones, [](const AsfBone& bone) { return !bone.unknown.empty(); });
+}
+
+Contents ContentsOf(const SkeletonSource& source) {
+  Contents contents;
+  if (!source.documentation.empty()) contents.emplace_back("the skeleton's documentation");
+  if (source.mass_unit.value_or(1) != 1) contents.emplace_back("its unit of mass");
+  return contents;
+}
+
+Contents ContentsOf(const AcclaimRecord& record, Carried /*carried*/) {
+  Contents contents;
+  const auto is_comment = [](const std::string& line) { return line.starts_with('#'); };
+  if (!record.asf.comments.empty() || std::ranges::any_of(record.amc.header, is_comment) ||
+      !record.amc.remarks.empty()) {
+    contents.emplace_back("comments");
+  }
+  if (HasUnknownLines(record.asf))
+    contents.emplace_back("lines of the ASF that are not understood");
+  return contents;
+}
+
+bool HasUnknownLines(const BvhJoint& joint) {
+  return !joint.unknown.empty() || std::ranges::any_of(joint.end_sites, [](const auto& site) {
+    return !site.unknown.empty();
+  });
+}
+
+Contents ContentsOf(const BvhMotion& bvh, Carried /*carried*/) {
+  Contents contents;
+  const auto roots = std::ranges::count(bvh.joints, -1, &BvhJoint::parent);
+  if (roots > 1) contents.push_back(fmt::format("other figures of the file: {}", roots - 1));
+  if (!bvh.unknown.empty() ||
+      std::ranges::any_of(bvh.joints, [](const auto& joint) { return HasUnknownLines(joint); })) {
+    contents.emplace_back("lines that are not understood");
+  }
+  return contents;
+}
+
+Contents ContentsOf(const TrcRecording& trc, Carried /*carried*/) {
+  Contents contents;
+  for (const TrcField& field : trc.other_fields) {
+    contents.push_back(fmt::format("field '{}'", field.name));
   }
   return contents;
 }
 
 }  // namespace
 
-void ReportRecordLoss(const Recording& recording, std::string_view format,
-                      Diagnostics& diagnostics) {
-  if (recording.record == nullptr) return;
-  const std::vector<std::string> contents = ContentsOf(*recording.record);
+void ReportRecordLoss(const Recording& recording, std::string_view format, Diagnostics& diagnostics,
+                      std::initializer_list<Extra> carried) {
+  Contents contents;
+  if (recording.has_skeleton() && !Carries(carried, Extra::kSkeletonSource)) {
+    contents = ContentsOf(recording.motion.skeleton->source());
+  }
+  if (recording.record != nullptr && recording.format != format) {
+    std::ranges::copy(std::visit([&](const auto& record) { return ContentsOf(record, carried); },
+                                 *recording.record),
+                      std::back_inserter(contents));
+  }
   if (contents.empty()) return;
   diagnostics.push_back(
       {Severity::kInfo, fmt::format("{} has no place for: {}", format, fmt::join(contents, ", "))});
+}
+
+void ReportUntold(const Untold& untold, std::string_view format, Diagnostics& diagnostics) {
+  std::string options;
+  if (untold.up) options += " --source-up " + ToLower(ToString(*untold.up));
+  if (!untold.units.empty()) options += fmt::format(" --source-units {}", untold.units);
+  if (options.empty()) return;
+  diagnostics.push_back(
+      {Severity::kWarning,
+       fmt::format("{} cannot tell what it is in; read this file with{}", format, options)});
 }
 
 }  // namespace kinebase::internal

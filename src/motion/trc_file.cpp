@@ -23,10 +23,8 @@ constexpr std::string_view kUsualUnits = "mm";
 std::string ChooseUnits(const TrcRecording& trc, const LoadOptions& options,
                         const std::filesystem::path& path, Diagnostics& diagnostics) {
   if (!options.units.empty()) {
-    if (CentimetresIn(options.units)) return options.units;
-    throw Error(ErrorCode::kInvalidArgument,
-                "unknown unit of length " + Quoted(options.units) + "; known: mm, cm, m, inch, ft",
-                {path});
+    (void)CentimetresInOrFail(options.units, path);
+    return options.units;
   }
   if (CentimetresIn(trc.units)) return trc.units;
   diagnostics.push_back(
@@ -38,6 +36,13 @@ std::string ChooseUnits(const TrcRecording& trc, const LoadOptions& options,
                          "another",
                          Quoted(trc.units))});
   return std::string(kUsualUnits);
+}
+
+// As asked for, else that of the TRC that was read.
+UpAxis UpAxisToWrite(const Recording& recording, const SaveOptions& options) {
+  const bool is_trc = recording.record && std::holds_alternative<TrcRecording>(*recording.record);
+  const UpAxis before = ParseUpAxis(is_trc ? recording.up_axis : "").value_or(UpAxis::kY);
+  return options.up_axis.value_or(before);
 }
 
 TrcRecording RecordToWrite(const Recording& recording, const std::filesystem::path& path,
@@ -103,6 +108,8 @@ void SaveTrc(const Recording& recording, const std::filesystem::path& path,
   }
   ReportFilledSamples(recording.markers, "TRC", diagnostics);
   ReportRecordLoss(recording, "TRC", diagnostics);
+  const UpAxis up = UpAxisToWrite(recording, options);
+  if (up != UpAxis::kY) ReportUntold({.up = up}, "TRC", diagnostics);
   WriteFile(path, FormatTrc(trc), options.overwrite);
 }
 

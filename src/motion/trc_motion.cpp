@@ -67,11 +67,7 @@ double FindRate(const TrcRecording& trc, Diagnostics& diagnostics) {
 
 TrcRecording ToTrc(const MarkerCloud& markers, const TrcWriteOptions& options,
                    Diagnostics& diagnostics) {
-  const auto cm_per_unit = CentimetresIn(options.units);
-  if (!cm_per_unit) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "unknown unit of length " + Quoted(options.units) + "; known: mm, cm, m, inch, ft");
-  }
+  const double cm_per_unit = CentimetresInOrFail(options.units);
   TrcRecording trc{.file_name = options.file_name,
                    .data_rate_hz = markers.rate_hz,
                    .camera_rate_hz = markers.rate_hz,
@@ -80,8 +76,8 @@ TrcRecording ToTrc(const MarkerCloud& markers, const TrcWriteOptions& options,
                    .original_first_frame = markers.first_frame,
                    .original_frame_count = markers.frame_count};
   trc.labels = internal::WritableLabels(markers.labels, "\t", ' ', diagnostics);
-  const Eigen::Matrix3d to_file = ToYUp(options.up).transpose() / *cm_per_unit;
-  const double digits = kDigitsPerMillimetre * std::max(1.0, *cm_per_unit / kCmPerMillimetre);
+  const Eigen::Matrix3d to_file = ToYUp(options.up).transpose() / cm_per_unit;
+  const double digits = kDigitsPerMillimetre * std::max(1.0, cm_per_unit / kCmPerMillimetre);
   for (int frame = 0; frame < markers.frame_count; ++frame) {
     const std::int64_t number = markers.first_frame + frame;
     trc.frame_numbers.push_back(number);

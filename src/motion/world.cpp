@@ -4,6 +4,9 @@
 #include <array>
 #include <initializer_list>
 
+#include "fmt/format.h"
+#include "fmt/ranges.h"
+#include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/core/units.h"
 
@@ -14,6 +17,24 @@ struct LengthUnit {
   double centimetres;
   std::initializer_list<std::string_view> names;
 };
+
+std::optional<double> CentimetresInWhole(std::string_view unit) {
+  static const std::array<LengthUnit, 5> kUnits = {{
+      {0.1, {"mm", "millimeter", "millimetre", "millimeters", "millimetres"}},
+      {1, {"cm", "centimeter", "centimetre", "centimeters", "centimetres"}},
+      {100, {"m", "meter", "metre", "meters", "metres"}},
+      {kCentimetresPerInch, {"in", "inch", "inches"}},
+      {12 * kCentimetresPerInch, {"ft", "foot", "feet"}},
+  }};
+  const std::string_view wanted = Trim(unit);
+  for (const LengthUnit& known : kUnits) {
+    if (std::ranges::any_of(
+            known.names, [&](std::string_view name) { return EqualsIgnoringCase(wanted, name); })) {
+      return known.centimetres;
+    }
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -37,21 +58,21 @@ Eigen::Matrix3d ToYUp(UpAxis up) {
 }
 
 std::optional<double> CentimetresIn(std::string_view unit) {
-  static const std::array<LengthUnit, 5> kUnits = {{
-      {0.1, {"mm", "millimeter", "millimetre", "millimeters", "millimetres"}},
-      {1, {"cm", "centimeter", "centimetre", "centimeters", "centimetres"}},
-      {100, {"m", "meter", "metre", "meters", "metres"}},
-      {kCentimetresPerInch, {"in", "inch", "inches"}},
-      {12 * kCentimetresPerInch, {"ft", "foot", "feet"}},
-  }};
-  const std::string_view wanted = Trim(unit);
-  for (const LengthUnit& known : kUnits) {
-    if (std::ranges::any_of(
-            known.names, [&](std::string_view name) { return EqualsIgnoringCase(wanted, name); })) {
-      return known.centimetres;
-    }
-  }
-  return std::nullopt;
+  constexpr double kLargestDivisor = 1e9;
+  const std::size_t slash = unit.find('/');
+  const auto whole_cm = CentimetresInWhole(unit.substr(0, slash));
+  if (slash == std::string_view::npos || !whole_cm) return whole_cm;
+  const double divisor = ParseDouble(Trim(unit.substr(slash + 1))).value_or(0);
+  if (!(divisor > 0 && divisor < kLargestDivisor)) return std::nullopt;
+  return *whole_cm / divisor;
+}
+
+double CentimetresInOrFail(std::string_view unit, const std::filesystem::path& file) {
+  if (const auto centimetres = CentimetresIn(unit)) return *centimetres;
+  throw Error(ErrorCode::kInvalidArgument,
+              fmt::format("unknown unit of length {}; known: {}, and parts of them such as '{}'",
+                          Quoted(unit), fmt::join(kLengthUnits, ", "), kAcclaimUnit),
+              {file});
 }
 
 }  // namespace kinebase

@@ -201,6 +201,42 @@ TEST_F(Converting, NamesMarkersByAnMnmFile) {
               HasSubstr("warning: the marker names fit none of the file's markers"));
 }
 
+TEST_F(Converting, WritesMarkersUnderTheNamesOfAnMnmFile) {
+  const std::string names = Out("names.mnm");
+  WriteText(names, "root Basis\n");
+  for (const std::string extension : {".trc", ".c3d"}) {
+    const std::string file = Make(squat(), "a" + extension, {"--write-names", names});
+    const auto labels = Info(file)["contents"]["labels"];
+    EXPECT_EQ(std::ranges::count(labels, "Basis"), 1);
+    EXPECT_EQ(std::ranges::count(labels, "root"), 0);
+    const auto again = Info(file, {"--names", names})["contents"]["labels"];
+    EXPECT_EQ(std::ranges::count(again, "root"), 1);
+  }
+}
+
+TEST_F(Converting, SaysHowToReadWhatAFileCannotTell) {
+  const std::string points = Make(squat(), "points.c3d");
+  EXPECT_THAT(Convert({squat(), Out("a.mat"), "--units", "mm", "--up", "z"}).err,
+              HasSubstr("warning: MAT cannot tell what it is in; read this file with --source-up "
+                        "z --source-units mm\n"));
+  EXPECT_THAT(Convert({points, Out("b.mat"), "--units", "m"}).err,
+              HasSubstr("read this file with --source-units m\n"));
+  EXPECT_THAT(Convert({points, Out("a.trc"), "--units", "m", "--up", "x"}).err,
+              HasSubstr("read this file with --source-up x\n"));
+  EXPECT_THAT(Convert({squat(), Out("a.bvh"), "--units", "m", "--up", "x"}).err,
+              HasSubstr("read this file with --source-up x\n"));
+  // What is as readers expect it, or guess it, needs no word.
+  for (const auto& [in, name, units, up] : {std::tuple(squat(), "c.mat", "inch", "y"),
+                                            {points, "d.mat", "cm", "y"},
+                                            {points, "c.trc", "m", "y"},
+                                            {squat(), "c.bvh", "m", "z"},
+                                            {squat(), "c.npz", "m", "z"}}) {
+    EXPECT_THAT(Convert({in, Out(name), "--units", units, "--up", up}).err,
+                Not(HasSubstr("read this file with")))
+        << name;
+  }
+}
+
 TEST_F(Converting, TakesTheSkeletonThatIsNamed) {
   const std::string motion = Out("alone/move.amc");
   WriteText(motion, ReadText(squat()));
@@ -272,7 +308,11 @@ TEST_F(Converting, SaysInOneLineWhatIsWrong) {
            {{squat(), out + ".xyz"}, 2, {"'" + out + ".xyz'", "no format", ".bvh"}},
            {{squat(), out}, 2, {"'" + out + "'", "no format", ".bvh"}},
            {{squat(), out + ".bvh", "--up", "up"}, 2, {"--up", "x, y, z"}},
-           {{squat(), out + ".bvh", "--units", "ell"}, 2, {"--units", "mm, cm, m, inch"}},
+           {{squat(), out + ".bvh", "--units", "ell"}, 2, {"--units", "mm, cm, m, inch, ft"}},
+           {{squat(), out + ".bvh", "--source-units", "ell"}, 2, {"--source-units", "inch / 0.45"}},
+           {{squat(), out + ".bvh", "--write-names", Out("empty.mnm")},
+            1,
+            {"BVH", "C3D, CSM and TRC"}},
            {{squat(), out + ".bvh", "--rate", "0"}, 2, {"--rate"}},
            {{squat(), out + ".bvh", "--source-rate", "nan"}, 2, {"--source-rate"}},
            {{squat() + ":20-10", out + ".bvh"}, 2, {"1 ≤ first ≤ last"}},
@@ -331,6 +371,9 @@ TEST(RealRecordings, KeepTheirChannelsInAStretchAndSayThatARateHasNone) {
       RunKinebase({"convert", gait, library.scratch() / "slow.c3d", "--rate", "50"});
   EXPECT_THAT(slow.err, HasSubstr("another rate has no place for: 38 analog channels, 8 events, 2 "
                                   "force plates, residuals"));
+  ExpectOneError(
+      RunKinebase({"convert", gait, library.scratch() / "a.mot", "--rate", "50", "--quiet"}), 1,
+      {"analog channels", "without --rate"});
 }
 
 TEST(RealRecordings, WithChannelsAloneGoWhereThoseCanBe) {
@@ -343,7 +386,9 @@ TEST(RealRecordings, WithChannelsAloneGoWhereThoseCanBe) {
                    {"1123x01EMG.c3d' holds neither markers nor a skeleton", "C3D, MOT and STO"});
   }
   for (const std::string extension : {".c3d", ".mot", ".sto"}) {
-    EXPECT_EQ(RunKinebase({"convert", emg, out + extension, "--quiet"}).exit_code, 0);
+    const ProgramResult result = RunKinebase({"convert", emg, out + extension});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.err, Not(HasSubstr("the 0 markers")));
   }
   const ProgramResult info = RunKinebase({"info", out + ".c3d"});
   EXPECT_THAT(info.out, AllOf(HasSubstr("8 channels at 1000 Hz"),

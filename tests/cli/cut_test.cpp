@@ -151,10 +151,11 @@ TEST_F(TakesToCut, AreSortedAndRenamedAndStillRead) {
   const std::string folder = clips();
   const ProgramResult tried = RunKinebase({"sort", folder, "--dry-run", "--json", "--quiet"});
   EXPECT_EQ(tried.exit_code, 0);
-  EXPECT_THAT(FieldsOf(tried.Json()), ElementsAre("moves:array", "left:array", "dry_run:boolean"));
-  EXPECT_TRUE(tried.Json()["dry_run"].get<bool>());
-  ASSERT_EQ(tried.Json()["moves"].size(), 4);
-  for (const auto& move : tried.Json()["moves"]) {
+  const auto plan = tried.Json();
+  EXPECT_THAT(FieldsOf(plan), ElementsAre("moves:array", "left:array", "dry_run:boolean"));
+  EXPECT_TRUE(plan["dry_run"].get<bool>());
+  ASSERT_EQ(plan["moves"].size(), 4);
+  for (const auto& move : plan["moves"]) {
     EXPECT_THAT(FieldsOf(move), ElementsAre("from:string", "to:string"));
     EXPECT_TRUE(fs::exists(move["from"].get<std::string>()));
     EXPECT_FALSE(fs::exists(move["to"].get<std::string>()));
@@ -163,7 +164,7 @@ TEST_F(TakesToCut, AreSortedAndRenamedAndStillRead) {
   const ProgramResult sorted = RunKinebase({"sort", folder});
   EXPECT_EQ(sorted.exit_code, 0);
   EXPECT_THAT(sorted.err, HasSubstr("4 files moved"));
-  for (const auto& move : tried.Json()["moves"]) {
+  for (const auto& move : plan["moves"]) {
     EXPECT_FALSE(fs::exists(move["from"].get<std::string>()));
     EXPECT_TRUE(fs::exists(move["to"].get<std::string>()));
   }

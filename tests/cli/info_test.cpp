@@ -122,6 +122,106 @@ TEST(Info, ListsFilesOfAllFormatsAndTheOnesThatFail) {
   EXPECT_THAT(FieldsOf(json.Json()["failed"][0]), ElementsAre("file:string", "message:string"));
 }
 
+TEST(Info, GoesOnWhereAPathIsMissing) {
+  const SyntheticLibrary library;
+  const ProgramResult result = RunKinebase({"info", "nowhere.bvh", library.Squat(), "-q"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("error: nowhere.bvh: does not exist"));
+  EXPECT_THAT(result.out, HasSubstr("SYN_sa_squat1Reps_001_120.amc"));
+  ExpectOneError(RunKinebase({"info", "nowhere.bvh", "-q"}), 1, {"nowhere.bvh: does not exist"});
+}
+
+// What a format has for people, and the fields of its contents.
+struct Other {
+  std::string file;
+  std::string format;
+  std::vector<std::string> lines;
+  std::vector<std::string> fields;
+};
+
+TEST(Info, ReadsWhatIsNoMotionByItself) {
+  const SyntheticLibrary library;
+  const std::string out = library.scratch() / "a";
+  WriteText(out + ".mnm", "LFHD Stirn\nC7 Hals\n");
+  for (const char* const extension : {".mot", ".sto", ".glb", ".csv"}) {
+    ASSERT_EQ(RunKinebase({"convert", library.Squat() + ":1-13", out + extension, "-q"}).exit_code,
+              0);
+  }
+  for (const auto& [file, format, lines, fields] : std::vector<Other>{
+           {library.folder() / "asf" / "SYN_sa.asf",
+            "ASF",
+            {"  joints    31, ", " degrees of freedom", "  units     5.644",
+             "  standard  all found"},
+            {"name:string", "bones:array", "degrees_of_freedom:integer", "cm_per_unit:number",
+             "documentation:array", "no_standard_joints:null"}},
+           {out + ".mnm",
+            "MNM",
+            {"  names     2: LFHD = Stirn, C7 = Hals\n", "  warning   "},
+            {"names:array"}},
+           {out + ".mot",
+            "MOT",
+            {"  rows      13\n", "  angles    degrees\n", ": root_tx, root_ty",
+             "  time      0.000 to 0.100 s, 120 rows a second\n"},
+            {"name:string", "data_type:string", "in_degrees:boolean", "rows:integer",
+             "columns:array", "first_time_s:number", "last_time_s:number", "rate_hz:number"}},
+           {out + ".sto",
+            "STO",
+            {"  cells     Quaternion\n", "root_imu", "  header    DataRate=120\n"},
+            {"name:string", "data_type:string", "in_degrees:null", "rows:integer", "columns:array",
+             "first_time_s:number", "last_time_s:number", "rate_hz:number"}},
+           {out + ".glb",
+            "GLB",
+            {"  nodes     ", "root, ", "  animation 0.100 s\n"},
+            {"generator:string", "nodes:array", "animations:integer", "last_time_s:number"}},
+           {out + ".csv",
+            "CSV",
+            {"  rows      13\n", ": frame, time_s, root_x", "120 rows a second\n"},
+            {"rows:integer", "columns:array", "first_time_s:number", "last_time_s:number",
+             "rate_hz:number"}},
+       }) {
+    SCOPED_TRACE(format);
+    const ProgramResult text = RunKinebase({"info", file});
+    EXPECT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.out, HasSubstr("  format    " + format + '\n'));
+    for (const std::string& line : lines) EXPECT_THAT(text.out, HasSubstr(line));
+    const auto info = InfoOf(file);
+    EXPECT_EQ(info["format"], format);
+    EXPECT_TRUE(info["frames"].is_null());
+    EXPECT_THAT(FieldsOf(info["contents"]), ::testing::ElementsAreArray(fields));
+    // All fields of a recording are there.
+    const auto recording = InfoOf(library.Squat());
+    for (const auto& [name, value] : recording.items()) EXPECT_TRUE(info.contains(name)) << name;
+    // Beside others it has a row of the table.
+    EXPECT_THAT(RunKinebase({"info", file, library.Squat()}).out, ContainsRegex("a?.* " + format));
+  }
+}
+
+TEST(Info, SaysWhatIsWrongWithWhatIsNoMotion) {
+  const SyntheticLibrary library;
+  const fs::path folder = library.scratch();
+  struct Bad {
+    std::string name;
+    std::string text;
+    std::string message;
+  };
+  using std::string_literals::operator""s;
+  for (const auto& [name, text, message] : std::vector<Bad>{
+           {"a.asf", "", "a.asf"},
+           {"a.mnm", "", "has no rows"},
+           {"a.mot", "name\n", "endheader"},
+           {"a.csv", "frame,time_s\n1,soon\n", "a.csv:2: time_s is 'soon'"},
+           {"a.glb", "glTF", "is no GLB"},
+           {"b.glb", "glTF\1\0\0\0\0\0\0\0\0\0\0\0JSON"s, "version 1"},
+           {"c.glb", "glTF\2\0\0\0\0\0\0\0\xFF\xFF\xFF\xFFJSON"s, "is cut off"},
+           {"d.glb", "glTF\2\0\0\0\0\0\0\0\2\0\0\0JSON[["s, "no scene"},
+           {"e.glb", "glTF\2\0\0\0\0\0\0\0\x0D\0\0\0JSON{\"nodes\":[7]}"s, "breaks glTF's rules"},
+       }) {
+    SCOPED_TRACE(name);
+    WriteText(folder / name, text);
+    ExpectOneError(RunKinebase({"info", folder / name, "-q"}), 1, {message});
+  }
+}
+
 TEST(InfoOfRealRecordings, SaysWhatIsOddAndWhere) {
   KINEBASE_NEEDS_TEST_DATA();
   const std::string boxing = TestData("data/bvh/misc/Boxing_Toes.bvh");

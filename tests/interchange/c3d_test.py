@@ -91,5 +91,33 @@ class C3dTest(InterchangeTest):
         self.assert_close(ours, points[:3].transpose(2, 1, 0)[:, :, [1, 2, 0]] / 10, 1e-4)
 
 
+    def test_what_c3d_writes_is_read_by_us(self):
+        """Points with a gap, and three analog channels at four times the rate."""
+        frames = 90
+        time = np.arange(frames) / 60
+        writer = c3d.Writer(point_rate=60, analog_rate=240, point_scale=-1)
+        points = np.zeros((frames, 2, 5), np.float32)
+        points[:, 0, 0], points[:, 0, 1], points[:, 0, 2] = 300 * np.cos(time), time, 900 - time
+        points[:, 1, :3] = 5 + 10 * time[:, np.newaxis]  # Not (0, 0, 0), which is missing.
+        points[20:30, 1, :3], points[20:30, 1, 3] = 0, -1
+        analog = np.arange(frames * 12, dtype=np.float32).reshape(frames, 3, 4)
+        writer.add_frames(list(zip(points, analog)))
+        writer.set_point_labels(["HAND", "FOOT"])
+        writer.set_analog_labels(["EMG1", "EMG2", "EMG3"])
+        path = self.folder / "theirs_c3d.c3d"
+        with open(path, "wb") as file:
+            writer.write(file)
+        names, ours = places(path, "--source-up", "z", "--source-units", "mm")
+        self.assertEqual(names, ["HAND", "FOOT"])
+        expected = points[:, :, [1, 2, 0]].astype(float) / 10
+        expected[20:30, 1] = np.nan
+        self.assert_close(ours, expected, 1e-4)
+        table = self.convert(path, "channels.sto").read_text().splitlines()
+        rows = [line.split("\t") for line in table[table.index("endheader") + 1 :]]
+        self.assertEqual(rows[0], ["time", "EMG1", "EMG2", "EMG3"])
+        values = np.array(rows[1:], float)[:, 1:]
+        np.testing.assert_array_equal(values, analog.transpose(0, 2, 1).reshape(-1, 3))
+
+
 if __name__ == "__main__":
     unittest.main()

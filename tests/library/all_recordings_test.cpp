@@ -83,8 +83,8 @@ constexpr WithoutJoints kWithoutJoints[] = {
     {"c3d/btk/others/badParameterOffset.c3d", kUnknownNames},
     {"csm/assimp_malformed_zero_framerange.csm", kUnknownNames},
     // A few bones only.
-    {"bvh/misc/full_precision_frame_time.bvh", "lacks bones of the standard skeleton"},
-    {"bvh/misc/rotation_first_root.bvh", "lacks bones of the standard skeleton"},
+    {"bvh/misc/full_precision_frame_time.bvh", "lacks bones for"},
+    {"bvh/misc/rotation_first_root.bvh", "lacks bones for"},
     // No marker at all.
     {"c3d/btk/others/1123x01EMG.c3d", "there are no markers"},
     {"c3d/btk/others/Analysis.c3d", "there are no markers"},

@@ -201,16 +201,6 @@ TEST(BvhUnits, OfAFigureThatIsHumanInNoneAreSaidToBeDoubtful) {
   EXPECT_THAT(Messages(diagnostics), Contains(HasSubstr("in no unit is it human")));
 }
 
-TEST(BvhUnits, AreNumbersOfCentimetres) {
-  EXPECT_DOUBLE_EQ(CentimetresPerUnit("inch / 0.45"), 2.54 / .45);
-  EXPECT_DOUBLE_EQ(CentimetresPerUnit("m"), 100);
-  for (const char* unit : {"", "cm /", "cm / 0", "cm / -1", "cm / x", "/ 2", "cubit"}) {
-    EXPECT_EQ(test::ErrorOf([&] { (void)CentimetresPerUnit(unit); }).code(),
-              ErrorCode::kInvalidArgument)
-        << unit;
-  }
-}
-
 // With Z up (x, y, z) of the file is (y, z, x) here, so ours is written as (z, x, y).
 TEST(BvhUpAxis, IsToldByHowThePersonStands) {
   Diagnostics diagnostics;

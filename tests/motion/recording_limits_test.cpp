@@ -188,7 +188,6 @@ TEST(CutRecording, KeepsFrameNumbersAndWhereTheyCameFrom) {
   whole.units = "mm";
   whole.up_axis = "Z";
   whole.markers.first_frame = 40;
-  whole.record = std::make_shared<const FileRecord>(TrcRecording());
   const Recording cut = CutRecording(whole, 1, 2);
   EXPECT_EQ(cut.record, nullptr);
   EXPECT_EQ(cut.frame_count(), 2);
@@ -206,7 +205,7 @@ TEST(CutRecording, KeepsFrameNumbersAndWhereTheyCameFrom) {
 
 TEST(ResampleRecording, TakesTheRateAndLeavesTheRecordBehind) {
   Recording whole = Markers();
-  whole.record = std::make_shared<const FileRecord>(C3dRecording());
+  whole.record = std::make_shared<const FileRecord>(test::C3dOf({"C7"}, {{{1, 2, 3}}}));
   const Recording fast = ResampleRecording(whole, 100);
   EXPECT_EQ(fast.record, nullptr);
   EXPECT_THAT(Messages(fast.diagnostics),

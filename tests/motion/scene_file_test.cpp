@@ -202,12 +202,12 @@ TEST_F(SceneFile, OfCsvIsATableOfPlaces) {
   EXPECT_EQ(Save({.markers = cloud}, "a.csv"),
             "frame,time_s,Ada:LFHD_x,Ada:LFHD_y,Ada:LFHD_z,C7_x,C7_y,C7_z,C7_2_x,C7_2_y,C7_2_z,"
             "unnamed_4_x,unnamed_4_y,unnamed_4_z\n"
-            "9,0,1,2,3,0.5,98,-7,0,0,1,1,1,1\n"
-            "10,0.02,,,,4,5,6,7,8,9,2,2,2\n");
+            "9,0.16,1,2,3,0.5,98,-7,0,0,1,1,1,1\n"
+            "10,0.18,,,,4,5,6,7,8,9,2,2,2\n");
   EXPECT_THAT(Messages(diagnostics_), Contains(HasSubstr("C7_2, unnamed_4")));
   // Our (x, y, z) is (z, x, y) where Z is up.
   EXPECT_THAT(Save({.markers = cloud}, "b.csv", {.up_axis = UpAxis::kZ, .units = "mm"}),
-              HasSubstr("\n9,0,30,10,20,-70,5,980,"));
+              HasSubstr("\n9,0.16,30,10,20,-70,5,980,"));
 }
 
 TEST_F(SceneFile, OfCsvHoldsTheJointsOfASkeleton) {
@@ -217,7 +217,7 @@ TEST_F(SceneFile, OfCsvHoldsTheJointsOfASkeleton) {
   ASSERT_EQ(table.columns.size(), 2 + 3 * motion.skeleton->joints().size());
   const JointTrajectories joints = ForwardKinematics(motion);
   for (int j = 0; j < motion.joint_count(); ++j) {
-    const auto column = static_cast<std::size_t>(2 + 3 * j);
+    const std::size_t column = 2 + 3 * static_cast<std::size_t>(j);
     EXPECT_EQ(table.columns[column], motion.skeleton->joints()[j].bone_name + "_x");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(std::stod(table.rows[4][column + axis]),

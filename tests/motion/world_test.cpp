@@ -1,8 +1,12 @@
 #include "kinebase/motion/world.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+
+#include "kinebase/core/error.h"
+#include "support/files.h"
 
 namespace kinebase {
 namespace {
@@ -34,8 +38,23 @@ TEST(CentimetresIn, KnowsUnitsByAllTheirNames) {
   EXPECT_EQ(CentimetresIn("meters"), 100);
   EXPECT_EQ(CentimetresIn("in"), 2.54);
   EXPECT_EQ(CentimetresIn("ft"), 30.48);
-  EXPECT_EQ(CentimetresIn("furlong"), std::nullopt);
-  EXPECT_EQ(CentimetresIn(""), std::nullopt);
+  for (const std::string_view unit : kLengthUnits) EXPECT_TRUE(CentimetresIn(unit)) << unit;
+}
+
+TEST(CentimetresIn, KnowsPartsOfUnits) {
+  EXPECT_DOUBLE_EQ(CentimetresIn(kAcclaimUnit).value_or(0), 2.54 / .45);
+  EXPECT_DOUBLE_EQ(CentimetresIn("m/4").value_or(0), 25);
+}
+
+TEST(CentimetresIn, RefusesWhatIsNoUnit) {
+  for (const char* unit :
+       {"", "furlong", "cm /", "cm / 0", "cm / -1", "cm / x", "cm / inf", "/ 2", "cm / 1 / 2"}) {
+    EXPECT_EQ(CentimetresIn(unit), std::nullopt) << unit;
+    const Error error = test::ErrorOf([&] { (void)CentimetresInOrFail(unit, "a.trc"); });
+    EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument) << unit;
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("a.trc"),
+                                             testing::HasSubstr("mm, cm, m, inch, ft")));
+  }
 }
 
 }  // namespace

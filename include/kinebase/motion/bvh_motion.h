@@ -21,7 +21,7 @@
 namespace kinebase {
 
 struct BvhBuildOptions {
-  std::string units;              // "mm", "cm", "m", "inch", "inch / 0.45"; empty: by stature.
+  std::string units;              // As CentimetresIn; empty: by stature.
   std::optional<UpAxis> up_axis;  // Empty: by how the figure stands.
   double rate_hz = 0;             // 0: the frame time's.
 };
@@ -33,11 +33,6 @@ struct BvhFigure {
   std::string rig;                         // As RigMapping::rig.
   std::vector<JointSource> joint_sources;  // How the standard joints were found.
 };
-
-// Centimetres in a unit of length as world.h's CentimetresIn has it, or in a part of one:
-// "inch / 0.45".
-// Errors  InvalidArgument.
-[[nodiscard]] double CentimetresPerUnit(const std::string& units);
 
 // Errors       InvalidArgument: unknown unit; no rate, as the frame time is none.
 // diagnostics  What was chosen for the user: units, axis, what position channels mean; roots that
@@ -55,7 +50,7 @@ struct BvhWriteOptions {
 // come in the bone's Euler order, unwound from frame to frame; stretched bones as position
 // channels, which hold the whole place. Joints come back within 1e-6 cm.
 //
-// diagnostics  What a BVH cannot say: limits, a first frame other than 1.
+// diagnostics  What a BVH cannot say: limits, a rate that readers round.
 [[nodiscard]] BvhMotion ToBvh(const Motion& motion, const BvhWriteOptions& options,
                               Diagnostics& diagnostics);
 

@@ -54,7 +54,7 @@ struct LoadOptions {
   std::filesystem::path marker_names;  // An MNM file: which of the file's names is which marker.
   std::filesystem::path marker_set;    // Tells where joints are; empty: the built-in ones.
   std::optional<UpAxis> up_axis;       // For files that do not tell, or tell wrong.
-  std::string units;                   // The same for the unit of length: "mm", "cm", "m", "inch".
+  std::string units;                   // The same for the unit of length, as CentimetresIn.
 };
 
 // What a file holds as it stands there, so that writing the same format loses nothing.
@@ -98,7 +98,7 @@ struct Recording {
 struct SaveOptions {
   Overwrite overwrite = Overwrite::kNo;
   std::optional<UpAxis> up_axis;       // Default: as the record, else what the format expects.
-  std::string units;                   // The same; "mm", "cm", "m", "inch".
+  std::string units;                   // The same; as CentimetresIn.
   std::filesystem::path marker_names;  // An MNM file: names to write markers under.
 };
 
@@ -142,8 +142,8 @@ void SaveRecording(const Recording& recording, const std::filesystem::path& path
 [[nodiscard]] std::vector<JointSource> FindStandardJoints(const Recording& recording,
                                                           Diagnostics& diagnostics);
 
-// Frames first … last (0-based, inclusive) of what was read. The record of a C3D or CSM is cut too,
-// so that analog samples, events, residuals and sizes go along; others do not.
+// Frames first … last (0-based, inclusive) of what was read. The record is cut too, so that analog
+// samples, events, sizes, comments and what the reader does not know go along.
 // Errors  InvalidArgument if the range is empty or leaves the recording.
 [[nodiscard]] Recording CutRecording(const Recording& recording, int first, int last);
 

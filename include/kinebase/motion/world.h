@@ -3,10 +3,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
 namespace kinebase {
+
+// To choose units by.
+inline constexpr std::array<std::string_view, 5> kLengthUnits = {"mm", "cm", "m", "inch", "ft"};
+
+// The unit of CMU's and HDM05's skeletons; conversions of them to other formats kept the numbers.
+inline constexpr std::string_view kAcclaimUnit = "inch / 0.45";
 
 enum class UpAxis { kX, kY, kZ };
 
@@ -19,7 +27,12 @@ enum class UpAxis { kX, kY, kZ };
 [[nodiscard]] Eigen::Matrix3d ToYUp(UpAxis up);
 
 // Centimetres in a unit of length: "mm", "cm", "m", "inch" ("in"), "ft", in any case; a plural or
-// the long name too ("millimeters", "metres"). Empty for others.
+// the long name too ("millimeters", "metres"); or in a part of one, as kAcclaimUnit. Empty for
+// others.
 [[nodiscard]] std::optional<double> CentimetresIn(std::string_view unit);
+
+// The same. Errors  InvalidArgument, naming `file` and the known ones, for others.
+[[nodiscard]] double CentimetresInOrFail(std::string_view unit,
+                                         const std::filesystem::path& file = {});
 
 }  // namespace kinebase

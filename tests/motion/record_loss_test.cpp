@@ -1,0 +1,181 @@
+// What a file holds besides its motion: it goes along where it can, and is named where it cannot.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "motion/c3d_recordings.h"
+#include "motion/figure.h"
+#include "motion/person.h"
+#include "motion/recording_files.h"
+
+namespace kinebase {
+namespace {
+
+using test::Messages;
+using test::With;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class RecordLoss : public test::RecordingFiles {
+ protected:
+  // A pair of files with something to lose in every place where there can be.
+  Recording Acclaim() {
+    AsfSkeleton asf = test::FigureAsf();
+    asf.comments = {"# by hand"};
+    asf.mass_unit = 2;
+    asf.documentation = {"Seen on Monday."};
+    asf.unknown_root = {{"colour red"}};
+    test::WriteText(PathOf("a.asf"), FormatAsf(asf));
+    const Recording plain{.motion = test::SmoothMotion(test::FigureSkeleton(), 3, 6, 60)};
+    const Recording saved =
+        SaveAndLoad(plain, "b.amc", {.overwrite = Overwrite::kYes}, {.source_rate_hz = 60});
+    AmcMotion amc = std::get<AcclaimRecord>(*saved.record).amc;
+    amc.remarks = {{1, "# here he stumbles"}, {4, "# here he falls"}};
+    return LoadText("a.amc", FormatAmc(amc), {.source_rate_hz = 60});
+  }
+
+  Recording Bvh() {
+    const std::string text = test::BvhOf(
+        test::MakePerson([](StandardJoint joint) { return std::string(ToString(joint)); }));
+    return LoadText("a.bvh", With(text, "MOTION\n", "MOTION\nTake: 7\n"),
+                    {.up_axis = UpAxis::kY, .units = "cm"});
+  }
+
+  // Four frames, the first of which is number 3.
+  Recording Trc() {
+    return LoadText("a.trc",
+                    "PathFileType\t4\t(X/Y/Z)\ta.trc\n"
+                    "DataRate\tNumFrames\tNumMarkers\tUnits\tOperator\n"
+                    "60\t4\t1\tmm\tAda\nFrame#\tTime\tC7\t\t\n\t\tX1\tY1\tZ1\n\n"
+                    "3\t0.0333\t1\t2\t3\n4\t0.05\t4\t5\t6\n5\t0.0667\t7\t8\t9\n"
+                    "6\t0.0833\t1\t1\t1\n");
+  }
+
+  // Files are told apart by their numbers.
+  std::vector<std::string> SaidOf(const Recording& recording, std::string_view extension,
+                                  const SaveOptions& options = {}) {
+    Save(recording, fmt::format("out{}{}", ++count_, extension), options);
+    return Messages(diagnostics_);
+  }
+
+  int count_ = 0;
+};
+
+TEST_F(RecordLoss, OfAnAcclaimPairIsNamed) {
+  const Recording pair = Acclaim();
+  for (const char* extension : {".bvh", ".c3d", ".trc", ".csv", ".mot", ".sto", ".glb"}) {
+    EXPECT_THAT(SaidOf(pair, extension),
+                Contains(AllOf(HasSubstr("has no place for: the skeleton's documentation, its unit "
+                                         "of mass, comments, lines of the ASF"))))
+        << extension;
+  }
+  for (const char* extension : {".npz", ".mat"}) {
+    EXPECT_THAT(SaidOf(pair, extension),
+                Contains(HasSubstr("has no place for: comments, lines of the ASF")))
+        << extension;
+  }
+  EXPECT_THAT(SaidOf(pair, ".amc"), Not(Contains(HasSubstr("no place"))));
+}
+
+TEST_F(RecordLoss, OfADocumentedSkeletonIsNamedWhereverItComesFrom) {
+  const Recording from_npz = SaveAndLoad(Acclaim(), "c.npz");
+  EXPECT_THAT(SaidOf(from_npz, ".bvh"), Contains(HasSubstr("BVH has no place for: the skeleton's "
+                                                           "documentation, its unit of mass")));
+  EXPECT_THAT(SaidOf(from_npz, ".amc"), Not(Contains(HasSubstr("no place"))));
+}
+
+TEST_F(RecordLoss, OfABvhIsNamed) {
+  for (const char* extension : {".amc", ".npz", ".mat", ".glb", ".c3d"}) {
+    EXPECT_THAT(SaidOf(Bvh(), extension),
+                Contains(HasSubstr("no place for: lines that are not understood")))
+        << extension;
+  }
+  EXPECT_THAT(SaidOf(Bvh(), ".bvh", {.units = "m"}),
+              Contains(HasSubstr("in another world has no place for: lines that are not")));
+  EXPECT_THAT(SaidOf(Bvh(), ".bvh"), Not(Contains(HasSubstr("no place"))));
+}
+
+TEST_F(RecordLoss, OfATrcIsNamed) {
+  for (const char* extension : {".c3d", ".csm", ".npz", ".mat", ".csv"}) {
+    EXPECT_THAT(SaidOf(Trc(), extension), Contains(HasSubstr("no place for: field 'Operator'")))
+        << extension;
+  }
+  EXPECT_THAT(SaidOf(Trc(), ".trc"), Not(Contains(HasSubstr("no place"))));
+}
+
+TEST_F(RecordLoss, OfAC3dInATableOfChannelsIsNamed) {
+  C3dRecording c3d = test::C3dOf({"C7"}, {{{1, 2, 3}}, {{1, 2, 4}}});
+  c3d.channel_count = 1;
+  c3d.subframe_count = 1;
+  c3d.analog = {1, 2};
+  SetEvents(c3d, std::vector<C3dEvent>{{.time_s = .01, .label = "Foot Strike"}});
+  SetTextList(c3d, "SUBJECTS", "NAMES", std::vector<std::string>{"Ada"});
+  test::WriteText(PathOf("a.c3d"), FormatC3d(c3d));
+  const Recording loaded = LoadRecording(PathOf("a.c3d"));
+  for (const char* extension : {".mot", ".sto"}) {
+    EXPECT_THAT(SaidOf(loaded, extension),
+                AllOf(Contains(HasSubstr("no place for: 1 events, residuals, parameters of "
+                                         "SUBJECTS")),
+                      Contains(HasSubstr("the 1 markers are not in this file"))));
+  }
+  EXPECT_THAT(SaidOf(loaded, ".c3d"), Not(Contains(HasSubstr("no place"))));
+}
+
+TEST_F(RecordLoss, OfAnotherRateIsNamed) {
+  EXPECT_THAT(Messages(ResampleRecording(Acclaim(), 30).diagnostics),
+              Contains(HasSubstr("at another rate has no place for: comments, lines of the ASF")));
+  EXPECT_THAT(Messages(ResampleRecording(Trc(), 30).diagnostics),
+              Contains(HasSubstr("at another rate has no place for: field 'Operator'")));
+}
+
+TEST_F(RecordLoss, IsNoneInAStretchOfAnAcclaimPair) {
+  const Recording again =
+      SaveAndLoad(CutRecording(Acclaim(), 3, 5), "cut.amc", {}, {.source_rate_hz = 60});
+  const auto& [asf, amc] = std::get<AcclaimRecord>(*again.record);
+  EXPECT_THAT(asf.comments, ElementsAre("# by hand"));
+  EXPECT_THAT(asf.unknown_root, ElementsAre(AsfUnknown{"colour red"}));
+  ASSERT_EQ(amc.remarks.size(), 1);
+  EXPECT_EQ(amc.remarks[0].text, "# here he falls");
+  EXPECT_EQ(amc.remarks[0].frame, 1);
+  EXPECT_THAT(amc.frame_numbers, ElementsAre(4, 5, 6));
+  const AmcMotion& whole = std::get<AcclaimRecord>(*Acclaim().record).amc;
+  const std::size_t skipped = 3 * whole.column_count;
+  EXPECT_EQ(amc.values, std::vector(whole.values.begin() + static_cast<std::ptrdiff_t>(skipped),
+                                    whole.values.end()));
+}
+
+TEST_F(RecordLoss, IsNoneInAStretchOfABvh) {
+  const Recording whole =
+      SaveAndLoad({.motion = test::SmoothMotion(test::FigureSkeleton(), 3, 6, 60)}, "a.bvh");
+  const std::string text = With(test::ReadText(PathOf("a.bvh")), "MOTION\n", "MOTION\nTake: 7\n");
+  const Recording again = SaveAndLoad(CutRecording(LoadText("b.bvh", text), 1, 4), "c.bvh");
+  EXPECT_THAT(Messages(diagnostics_), ElementsAre(HasSubstr("first is number 2")));
+  const auto& bvh = std::get<BvhMotion>(*again.record);
+  EXPECT_THAT(bvh.unknown, ElementsAre("Take: 7"));
+  EXPECT_EQ(bvh.declared_frame_count, 4);
+  const auto& all = std::get<BvhMotion>(*whole.record);
+  const auto columns = static_cast<std::ptrdiff_t>(all.column_count);
+  EXPECT_EQ(bvh.values, std::vector(all.values.begin() + columns, all.values.end() - columns));
+}
+
+TEST_F(RecordLoss, IsNoneInAStretchOfATrc) {
+  const Recording again = SaveAndLoad(CutRecording(Trc(), 1, 2), "cut.trc");
+  const auto& trc = std::get<TrcRecording>(*again.record);
+  EXPECT_THAT(trc.other_fields, ElementsAre(TrcField{"Operator", "Ada"}));
+  EXPECT_THAT(trc.frame_numbers, ElementsAre(4, 5));
+  EXPECT_THAT(trc.times_s, ElementsAre(.05, .0667));
+  EXPECT_THAT(trc.values, ElementsAre(4, 5, 6, 7, 8, 9));
+}
+
+TEST_F(RecordLoss, OfOptionsThatAnAcclaimPairDoesNotNeedIsNamed) {
+  (void)Acclaim();
+  const Recording told =
+      LoadRecording(PathOf("a.amc"), {.source_rate_hz = 60, .up_axis = UpAxis::kZ, .units = "mm"});
+  EXPECT_THAT(Messages(told.diagnostics), Contains(HasSubstr("--source-up are not followed")));
+}
+
+}  // namespace
+}  // namespace kinebase
