@@ -17,6 +17,7 @@ void AddRenameCommand(CLI::App& program, int& exit_code);
 void AddLearnCommand(CLI::App& program, int& exit_code);
 void AddTemplateCommand(CLI::App& program, int& exit_code);
 void AddSearchCommand(CLI::App& program, int& exit_code);
+void AddExplainCommand(CLI::App& program, int& exit_code);
 void AddSynthCommand(CLI::App& program, int& exit_code);
 void AddHdm05Command(CLI::App& program, int& exit_code);
 void AddManualCommands(CLI::App& program, int& exit_code);  // manual, completion

@@ -1,5 +1,7 @@
 #include "kinebase/library/take_search.h"
 
+#include "library/take_frames.h"
+
 namespace kinebase {
 
 std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
@@ -11,15 +13,7 @@ std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
   std::vector<TakeHit> hits;
   for (const Hit& hit : SearchTemplate(motion_template, recordings, options)) {
     const auto index = static_cast<std::size_t>(hit.recording);
-    const TakeFeatures& take = takes[index];
-    const FrameRange frames =
-        FramesOfColumns(hit.first, hit.last, take.features.rate_hz, take.rate_hz, take.frame_count);
-    hits.push_back({.take = index,
-                    .first_frame = frames.first + 1,
-                    .last_frame = frames.last + 1,
-                    .start_s = static_cast<double>(frames.first) / take.rate_hz,
-                    .end_s = static_cast<double>(frames.last + 1) / take.rate_hz,
-                    .cost = hit.cost});
+    hits.push_back(internal::ToTakeHit(hit, takes[index], index));
   }
   return hits;
 }

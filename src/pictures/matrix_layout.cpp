@@ -88,7 +88,8 @@ MatrixLayout LayOutMatrix(const MatrixPicture& picture, const FeatureSet& featur
   const double content =
       std::max({layout.matrix_left + layout.matrix_width - kMargin, kLeastContentWidth,
                 std::min(std::ceil(TextWidth(layout.facts, kFactStyle)), kMostFactsWidth)});
-  layout.size = {kMargin + content + kMargin, layout.legend_top + 30 + kMargin};
+  const double second_legend = picture.found.empty() ? 0 : kLegendPitch;
+  layout.size = {kMargin + content + kMargin, layout.legend_top + 30 + second_legend + kMargin};
   return layout;
 }
 

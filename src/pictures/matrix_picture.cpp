@@ -17,6 +17,8 @@ namespace {
 constexpr Color kBlack = {0, 0, 0};
 constexpr Color kWhite = {255, 255, 255};
 constexpr Color kFrame = {120, 120, 120};
+constexpr Color kWrong = {214, 39, 40};  // Holds and must not; the other way round it is paler.
+constexpr Color kLacking = {255, 152, 150};
 constexpr Color kHairline = {205, 205, 205};
 constexpr Color kLightWeight = {198, 219, 239};  // Of weight 0,
 constexpr Color kHeavyWeight = {8, 48, 107};     // of weight 2 and more.
@@ -94,22 +96,52 @@ void DrawRowNames(Canvas& canvas, const FeatureSet& features, const MatrixLayout
   canvas.EndGroup();
 }
 
+struct RowBand {
+  double top = 0;
+  double height = 0;
+};
+
 // One rectangle for neighbours of one colour: cells are many, and repeat.
-void DrawRow(Canvas& canvas, const MatrixPicture& picture, const MatrixLayout& layout,
-             int feature_count, int feature) {
-  const auto color = [&](int column) {
-    return CellColor(picture.coding,
-                     DrawnMean(picture.values, layout, column, feature_count, feature));
-  };
+template <typename ColorOfColumn>
+void DrawBand(Canvas& canvas, const MatrixLayout& layout, const RowBand& band,
+              ColorOfColumn color) {
   for (int first = 0; first < layout.drawn_columns;) {
     const Color shared = color(first);
     int end = first + 1;
     while (end < layout.drawn_columns && color(end) == shared) ++end;
-    canvas.Rectangle({layout.matrix_left + first * layout.column_width, layout.row_top[feature],
-                      (end - first) * layout.column_width, kRowHeight},
+    canvas.Rectangle({layout.matrix_left + first * layout.column_width, band.top,
+                      (end - first) * layout.column_width, band.height},
                      shared);
     first = end;
   }
+}
+
+// Of several columns that are drawn as one, what is wrong in any of them is seen.
+Color FoundColor(const MatrixPicture& picture, const MatrixLayout& layout, int drawn_column,
+                 int feature_count, int feature) {
+  const int first = drawn_column * layout.merged;
+  const int end = std::min(first + layout.merged, picture.column_count());
+  FoundEntry shown;
+  for (int column = first; column < end; ++column) {
+    const FoundEntry& entry =
+        picture.found[static_cast<std::size_t>(column) * feature_count + feature];
+    if (entry.is_wrong || !shown.is_wrong) shown = entry;
+  }
+  if (shown.is_wrong) return shown.holds ? kWrong : kLacking;
+  return shown.holds ? kWhite : kBlack;
+}
+
+void DrawRow(Canvas& canvas, const MatrixPicture& picture, const MatrixLayout& layout,
+             int feature_count, int feature) {
+  const double top = layout.row_top[feature];
+  const double height = picture.found.empty() ? kRowHeight : kRowHeight / 2;
+  DrawBand(canvas, layout, {top, height}, [&](int column) {
+    return CellColor(picture.coding,
+                     DrawnMean(picture.values, layout, column, feature_count, feature));
+  });
+  if (picture.found.empty()) return;
+  DrawBand(canvas, layout, {top + height, height},
+           [&](int column) { return FoundColor(picture, layout, column, feature_count, feature); });
 }
 
 void DrawCells(Canvas& canvas, const MatrixPicture& picture, const FeatureSet& features,
@@ -224,6 +256,11 @@ void DrawLegend(Canvas& canvas, const MatrixPicture& picture, const MatrixLayout
       DrawSwatches(canvas, at,
                    std::array{Swatch{kBlack, "must not hold (0)"}, Swatch{kWhite, "must hold (1)"},
                               Swatch{kAnyColor, "any"}});
+      if (picture.found.empty()) break;
+      DrawSwatches(canvas, {at.x, at.y + kLegendPitch},
+                   std::array{Swatch{kBlack, "below: does not hold"}, Swatch{kWhite, "holds"},
+                              Swatch{kWrong, "holds and must not"},
+                              Swatch{kLacking, "must hold and does not"}});
       break;
     case CellCoding::kBits:
       if (layout.merged > 1) {

@@ -17,13 +17,20 @@ enum class CellCoding {
   kBits,       // 0 and 1.
 };
 
+// What a recording does where a template asks for something.
+struct FoundEntry {
+  bool holds = false;
+  bool is_wrong = false;
+};
+
 struct MatrixPicture {
   std::string title;
   std::vector<std::string> facts;  // For the line below the title.
   CellCoding coding = CellCoding::kShare;
-  double rate_hz = 0;           // Columns of weight 1 a second.
-  std::vector<double> values;   // [column × feature].
-  std::vector<double> weights;  // [column].
+  double rate_hz = 0;             // Columns of weight 1 a second.
+  std::vector<double> values;     // [column × feature].
+  std::vector<FoundEntry> found;  // The same; drawn below the values if there are any.
+  std::vector<double> weights;    // [column].
   bool show_weights = true;
 
   [[nodiscard]] int column_count() const { return static_cast<int>(weights.size()); }

@@ -135,4 +135,28 @@ void DrawFeatureMatrix(const FeatureMatrix& matrix, const FeatureSet& features,
   internal::DrawMatrixPicture(picture, features, path, overwrite);
 }
 
+void DrawComparison(std::span<const ComparedColumn> columns, double rate_hz,
+                    const FeatureSet& features, const std::string& title,
+                    const std::filesystem::path& path, Overwrite overwrite) {
+  CheckDrawable(static_cast<int>(columns.size()), rate_hz, "the comparison");
+  internal::MatrixPicture picture;
+  picture.title = title.empty() ? "Comparison" : title;
+  picture.facts =
+      MatrixFacts(columns.size(), static_cast<double>(columns.size()), rate_hz, features);
+  picture.coding = internal::CellCoding::kQuantized;
+  picture.rate_hz = rate_hz;
+  picture.weights.assign(columns.size(), 1);
+  picture.show_weights = false;
+  for (const ComparedColumn& column : columns) {
+    for (int feature = 0; feature < features.feature_count(); ++feature) {
+      const auto has = [feature](std::uint64_t word) { return ((word >> feature) & 1U) != 0; };
+      const bool is_asked = has(column.consistent);
+      picture.values.push_back(!is_asked ? 0.5 : has(column.ones) ? 1 : 0);
+      picture.found.push_back({.holds = has(column.recording),
+                               .is_wrong = is_asked && has(column.recording) != has(column.ones)});
+    }
+  }
+  internal::DrawMatrixPicture(picture, features, path, overwrite);
+}
+
 }  // namespace kinebase

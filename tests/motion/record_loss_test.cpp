@@ -141,7 +141,8 @@ TEST_F(RecordLoss, IsNoneInAStretchOfAnAcclaimPair) {
   EXPECT_EQ(amc.remarks[0].text, "# here he falls");
   EXPECT_EQ(amc.remarks[0].frame, 1);
   EXPECT_THAT(amc.frame_numbers, ElementsAre(4, 5, 6));
-  const AmcMotion& whole = std::get<AcclaimRecord>(*Acclaim().record).amc;
+  const Recording before = Acclaim();
+  const AmcMotion& whole = std::get<AcclaimRecord>(*before.record).amc;
   const std::size_t skipped = 3 * whole.column_count;
   EXPECT_EQ(amc.values, std::vector(whole.values.begin() + static_cast<std::ptrdiff_t>(skipped),
                                     whole.values.end()));

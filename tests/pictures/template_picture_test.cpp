@@ -381,5 +381,40 @@ TEST_F(TemplatePicture, RefusesFeatureMatricesThatCannotBeDrawn) {
   EXPECT_EQ(code(no_rate), ErrorCode::kInvalidArgument);
 }
 
+TEST_F(TemplatePicture, OfAComparisonMarksWhatIsNotAsAsked) {
+  const FeatureSet set = MakeSet(2);
+  // The first feature must hold, then must not; the second is free.
+  const std::vector<ComparedColumn> columns = {
+      {0b01, 0b01, 0b11}, {0b01, 0b01, 0b00}, {0b01, 0b00, 0b01}, {0b01, 0b00, 0b00}};
+  DrawComparison(columns, 30, set, "why", File("c.png"), Overwrite::kNo);
+  DrawComparison(columns, 30, set, "why", File("c.svg"), Overwrite::kNo);
+  const std::string svg = test::ReadText(File("c.svg"));
+  const std::vector<SvgElement> cells = SvgReader(svg).Named("rect", "cells");
+  std::set<double> tops;
+  double left = 1e9, right = 0;
+  for (const SvgElement& cell : cells) {
+    tops.insert(cell.Number("y"));
+    left = std::min(left, cell.Number("x"));
+    right = std::max(right, cell.Number("x") + cell.Number("width"));
+  }
+  ASSERT_EQ(tops.size(), 4);  // Two rows, each asked and found.
+  const test::PngReader png(File("c.png"));
+  std::vector<std::vector<Color>> colors;
+  for (const double top : tops) {
+    auto& row = colors.emplace_back();
+    for (int c = 0; c < 4; ++c) {
+      row.push_back(png.At(left + (c + .5) * (right - left) / 4, top + 4));
+    }
+  }
+  constexpr Color kWrong = {214, 39, 40};
+  constexpr Color kLacking = {255, 152, 150};
+  EXPECT_EQ(colors[0], (std::vector<Color>{kWhite, kWhite, kBlack, kBlack}));
+  EXPECT_EQ(colors[1], (std::vector<Color>{kWhite, kLacking, kWrong, kBlack}));
+  EXPECT_EQ(colors[2], (std::vector<Color>(4, kAnyColor)));
+  EXPECT_EQ(colors[3], (std::vector<Color>{kWhite, kBlack, kBlack, kBlack}));
+  EXPECT_EQ(ErrorOf([&] { DrawComparison({}, 30, set, "", File("d.svg"), Overwrite::kNo); }).code(),
+            ErrorCode::kInvalidArgument);
+}
+
 }  // namespace
 }  // namespace kinebase

@@ -6,7 +6,9 @@
 // the features and a time axis, which the figures lack.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "kinebase/core/output_file.h"
@@ -47,5 +49,21 @@ void DrawTemplate(const MotionTemplate& motion_template, const FeatureSet& featu
 void DrawFeatureMatrix(const FeatureMatrix& matrix, const FeatureSet& features,
                        const std::string& title, const std::filesystem::path& path,
                        Overwrite overwrite);
+
+// One column of a template against the column of a recording that it was matched with.
+struct ComparedColumn {
+  std::uint64_t consistent = 0;  // Bit i: feature i is asked for,
+  std::uint64_t ones = 0;        // and must hold.
+  std::uint64_t recording = 0;   // It does.
+};
+
+// Each row twice: above what the template asks for (black = must not hold, white = must hold, gray
+// = any), below what the recording does, red where that is not as asked.
+//
+// columns  Along the warping path, `rate_hz` of them a second.
+// Errors   InvalidArgument without columns or rate; those of WritePicture.
+void DrawComparison(std::span<const ComparedColumn> columns, double rate_hz,
+                    const FeatureSet& features, const std::string& title,
+                    const std::filesystem::path& path, Overwrite overwrite);
 
 }  // namespace kinebase

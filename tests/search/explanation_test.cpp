@@ -1,0 +1,51 @@
+#include "kinebase/search/explanation.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "search/scans.h"
+
+namespace kinebase::test {
+namespace {
+
+RC_GTEST_PROP(ExplainPath, AccountsForTheWholeCost, ()) {
+  Random random(*rc::gen::arbitrary<std::uint32_t>());
+  const int features = 1 + random.Below(64);
+  const Profile matching = random.Below(2) == 0 ? Profile::kBonn : Profile::kPaper;
+  const QuantizedTemplate motion_template =
+      RandomQuantized(random, 1 + random.Below(12), features, matching);
+  const std::vector<std::uint64_t> recording =
+      RandomRecording(random, 1 + random.Below(40), features);
+  const DeltaCurve curve = ComputeDeltaReference(motion_template, recording);
+  for (int last = 0; last < std::ssize(recording); ++last) {
+    const std::vector<ExplainedCell> cells = ExplainPath(motion_template, recording, last);
+    RC_ASSERT(cells.empty() == (curve.start[last] < 0));
+    double cost = 0;
+    for (const ExplainedCell& each : cells) {
+      const QuantizedColumn& column = motion_template.columns[each.cell.template_column];
+      RC_ASSERT((each.agreed | each.disagreed) == column.consistent);
+      RC_ASSERT((each.agreed & each.disagreed) == 0);
+      cost += std::popcount(each.disagreed) * each.cost_of_one;
+    }
+    if (!cells.empty()) RC_ASSERT(std::abs(cost - curve.delta[last]) < 1e-12);
+  }
+}
+
+// The second column asks for both features, the recording has the first alone.
+TEST(ExplainPath, SaysWhichFeatureWasWrongWhere) {
+  TemplateMatrix matrix{.rate_hz = 30, .feature_count = 2};
+  matrix.values = {0, .5, 1, 1};
+  matrix.weights.assign(2, 1);
+  const QuantizedTemplate motion_template = Quantize(matrix, 0.1, Profile::kPaper);
+  const std::vector<std::uint64_t> recording = {0b11, 0b10, 0b01};
+  const std::vector<ExplainedCell> cells = ExplainPath(motion_template, recording, 2);
+  ASSERT_EQ(cells.size(), 2);
+  EXPECT_EQ(cells[0], (ExplainedCell{{0, 1}, 0b01, 0b00, .5}));
+  EXPECT_EQ(cells[1], (ExplainedCell{{1, 2}, 0b01, 0b10, .25}));
+}
+
+}  // namespace
+}  // namespace kinebase::test
