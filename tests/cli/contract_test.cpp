@@ -207,6 +207,7 @@ TEST(StandardError, HasNoProgressAndNoColourInAFile) {
 }
 
 TEST(StandardError, ShowsProgressOnATerminalAndClearsIt) {
+  if (!HasTerminals()) GTEST_SKIP() << "this system gives no terminals (no /dev/pts)";
   const SyntheticLibrary library;
   const std::vector<std::string> search = {"search", library.Learn("squat1Reps"), "--in",
                                            library.folder()};
@@ -221,6 +222,7 @@ TEST(StandardError, ShowsProgressOnATerminalAndClearsIt) {
 }
 
 TEST(StandardError, HasColourOnATerminalUnlessNoColor) {
+  if (!HasTerminals()) GTEST_SKIP() << "this system gives no terminals (no /dev/pts)";
   const std::vector<std::string> wrong = {"info", "nowhere.amc"};
   EXPECT_THAT(RunKinebase(wrong, {.on_terminal = true}).err, HasSubstr("\x1b[1;31merror:\x1b[0m"));
   for (const ProgramResult& plain :

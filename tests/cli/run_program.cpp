@@ -128,6 +128,15 @@ std::vector<std::string> ProgramResult::ErrorLines() const {
   return lines;
 }
 
+bool HasTerminals() {
+  try {
+    const Channel terminal(true);
+    return true;
+  } catch (const std::system_error&) {
+    return false;
+  }
+}
+
 ProgramResult RunCommand(const std::vector<std::string>& arguments, const RunOptions& options) {
   Channel out(false);
   Channel err(options.on_terminal);

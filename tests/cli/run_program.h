@@ -30,6 +30,9 @@ struct RunOptions {
 // argv[0] is looked up in PATH, as far as it has no slash.
 ProgramResult RunCommand(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
+// Whether `on_terminal` can be had: a bare chroot has no /dev/pts.
+bool HasTerminals();
+
 // The program kinebase.
 ProgramResult RunKinebase(std::vector<std::string> arguments, const RunOptions& options = {});
 
