@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -108,6 +109,21 @@ TrcRecording Cut(TrcRecording trc, int first, int last) {
   Keep(trc.times_s, 1, first, last);
   Keep(trc.values, trc.marker_count() * 3, first, last);
   return trc;
+}
+
+// A gap across the first frame of a cut is filled from frames that the cut does not have, so the
+// record would be read as another motion.
+bool BeginsInAGap(const FileRecord& record, int first) {
+  const auto frame = static_cast<std::size_t>(first);
+  const auto has_gap = [&](const std::vector<double>& values, std::size_t columns) {
+    const auto row = std::span(values).subspan(frame * columns, columns);
+    return std::ranges::any_of(row, [](double value) { return std::isnan(value); });
+  };
+  if (const auto* acclaim = std::get_if<AcclaimRecord>(&record)) {
+    return has_gap(acclaim->amc.values, acclaim->amc.column_count);
+  }
+  const auto* bvh = std::get_if<BvhMotion>(&record);
+  return bvh != nullptr && has_gap(bvh->values, bvh->column_count);
 }
 
 std::shared_ptr<const FileRecord> CutRecord(const FileRecord& record, int first, int last) {
@@ -285,7 +301,13 @@ Recording CutRecording(const Recording& recording, int first, int last) {
   } else {
     cut.markers = CutMarkers(recording.markers, first, last);
   }
-  if (recording.record != nullptr) cut.record = CutRecord(*recording.record, first, last);
+  if (recording.record == nullptr) return cut;
+  if (BeginsInAGap(*recording.record, first)) {
+    internal::ReportRecordLoss(recording, "a stretch that begins in a gap", cut.diagnostics,
+                               {internal::Extra::kSkeletonSource});
+  } else {
+    cut.record = CutRecord(*recording.record, first, last);
+  }
   return cut;
 }
 

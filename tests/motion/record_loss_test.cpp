@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "motion/c3d_recordings.h"
 #include "motion/figure.h"
 #include "motion/person.h"
@@ -160,6 +162,23 @@ TEST_F(RecordLoss, IsNoneInAStretchOfABvh) {
   const auto& all = std::get<BvhMotion>(*whole.record);
   const auto columns = static_cast<std::ptrdiff_t>(all.column_count);
   EXPECT_EQ(bvh.values, std::vector(all.values.begin() + columns, all.values.end() - columns));
+}
+
+// What fills the gap stands before the stretch.
+TEST_F(RecordLoss, IsNamedInAStretchThatBeginsInAGap) {
+  const Recording whole = Acclaim();
+  AmcMotion amc = std::get<AcclaimRecord>(*whole.record).amc;
+  for (std::size_t frame = 2; frame < 4; ++frame) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      amc.values[frame * amc.column_count + i] = std::nan("");
+    }
+  }
+  const Recording gap = LoadText("a.amc", FormatAmc(amc), {.source_rate_hz = 60});
+  const Recording cut = CutRecording(gap, 3, 5);
+  EXPECT_THAT(Messages(cut.diagnostics),
+              Contains(HasSubstr("begins in a gap has no place for: comments, lines of the ASF")));
+  const Recording again = SaveAndLoad(cut, "cut.amc", {}, {.source_rate_hz = 60});
+  EXPECT_LE((again.motion.root_position_cm[0] - gap.motion.root_position_cm[1]).norm(), 1e-6);
 }
 
 TEST_F(RecordLoss, IsNoneInAStretchOfATrc) {
