@@ -39,17 +39,16 @@ MarkerCloud CutMarkers(const MarkerCloud& markers, int first, int last) {
 }
 
 MarkerCloud ResampleMarkers(const MarkerCloud& markers, double rate_hz) {
-  const int samples = internal::SampleCount(markers.frame_count, markers.rate_hz, rate_hz);
-  MarkerCloud result{
-      .labels = markers.labels,
-      .rate_hz = rate_hz,
-      .frame_count = samples,
-      .first_frame = internal::FirstSample(markers.first_frame, markers.rate_hz, rate_hz)};
-  result.positions_cm.reserve(result.Index(samples, 0));
-  result.states.reserve(result.Index(samples, 0));
-  for (int sample = 0; sample < samples; ++sample) {
-    const auto place =
-        internal::PlaceOfSample(sample, markers.rate_hz, rate_hz, markers.frame_count);
+  const internal::SampleGrid grid(markers.first_frame, markers.frame_count, markers.rate_hz,
+                                  rate_hz);
+  MarkerCloud result{.labels = markers.labels,
+                     .rate_hz = rate_hz,
+                     .frame_count = grid.count(),
+                     .first_frame = grid.first_number()};
+  result.positions_cm.reserve(result.Index(grid.count(), 0));
+  result.states.reserve(result.Index(grid.count(), 0));
+  for (int sample = 0; sample < grid.count(); ++sample) {
+    const auto place = grid.Place(sample);
     const int after = place.share == 0 ? place.before : place.after;
     for (int marker = 0; marker < markers.marker_count(); ++marker) {
       const Eigen::Vector3d& a = markers.at(place.before, marker);

@@ -10,9 +10,7 @@
 
 namespace kinebase {
 
-using internal::FirstSample;
-using internal::PlaceOfSample;
-using internal::SampleCount;
+using internal::SampleGrid;
 
 namespace {
 
@@ -91,17 +89,17 @@ Motion CutMotion(const Motion& motion, int first, int last) {
 }
 
 Motion ResampleMotion(const Motion& motion, double rate_hz) {
-  const int samples = SampleCount(motion.frame_count, motion.rate_hz, rate_hz);
+  const SampleGrid grid(motion.first_frame, motion.frame_count, motion.rate_hz, rate_hz);
   Motion result{.skeleton = motion.skeleton,
                 .rate_hz = rate_hz,
-                .frame_count = samples,
-                .first_frame = FirstSample(motion.first_frame, motion.rate_hz, rate_hz)};
+                .frame_count = grid.count(),
+                .first_frame = grid.first_number()};
   const auto joints = static_cast<std::size_t>(motion.joint_count());
   const auto blend = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b, double share) {
     return Eigen::Vector3d(a + (b - a) * share);
   };
-  for (int sample = 0; sample < samples; ++sample) {
-    const auto place = PlaceOfSample(sample, motion.rate_hz, rate_hz, motion.frame_count);
+  for (int sample = 0; sample < grid.count(); ++sample) {
+    const auto place = grid.Place(sample);
     const auto a = static_cast<std::size_t>(place.before);
     const auto b = static_cast<std::size_t>(place.after);
     result.root_position_cm.push_back(
@@ -120,12 +118,11 @@ Motion ResampleMotion(const Motion& motion, double rate_hz) {
 }
 
 JointTrajectories ResampleTrajectories(const JointTrajectories& trajectories, double rate_hz) {
-  const int frames = trajectories.frame_count();
-  const int samples = SampleCount(frames, trajectories.rate_hz, rate_hz);
+  const SampleGrid grid(1, trajectories.frame_count(), trajectories.rate_hz, rate_hz);
   JointTrajectories result{.rate_hz = rate_hz, .joint_count = trajectories.joint_count};
-  result.positions_cm.reserve(static_cast<std::size_t>(samples) * trajectories.joint_count);
-  for (int sample = 0; sample < samples; ++sample) {
-    const auto place = PlaceOfSample(sample, trajectories.rate_hz, rate_hz, frames);
+  result.positions_cm.reserve(static_cast<std::size_t>(grid.count()) * trajectories.joint_count);
+  for (int sample = 0; sample < grid.count(); ++sample) {
+    const auto place = grid.Place(sample);
     for (int joint = 0; joint < trajectories.joint_count; ++joint) {
       const Eigen::Vector3d& a = trajectories.at(place.before, joint);
       const Eigen::Vector3d& b = trajectories.at(place.after, joint);

@@ -68,7 +68,8 @@ TEST(ResampleMarkers, IsLinearAndNeverInventsWhatIsMissing) {
 }
 
 TEST(ResampleMarkers, PicksFramesExactlyAtAPartOfTheRate) {
-  const MarkerCloud cloud = TwoMarkers(6);
+  MarkerCloud cloud = TwoMarkers(6);
+  cloud.first_frame = 1;
   const MarkerCloud half = ResampleMarkers(cloud, 50);
   ASSERT_EQ(half.frame_count, 3);
   EXPECT_EQ(half.at(2, 0), cloud.at(4, 0));

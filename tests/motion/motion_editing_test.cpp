@@ -61,6 +61,33 @@ TEST(ResampleMotion, PicksFramesExactlyWhereTheRateDivides) {
   }
 }
 
+// 120 Hz: frame 7 is at 6 / 120 s, and so between samples 2 (4 / 120 s) and 3 (8 / 120 s) of 30 Hz.
+TEST(ResampleMotion, KeepsTheTimeOfNumberedFrames) {
+  const Motion motion = Smooth(42, 120);
+  const Motion slow = ResampleMotion(CutMotion(motion, 6, 41), 30);
+  EXPECT_EQ(slow.first_frame, 3);
+  ASSERT_EQ(slow.frame_count, 9);  // Frames 9, 13 … 41.
+  for (int frame = 0; frame < slow.frame_count; ++frame) {
+    EXPECT_EQ(slow.root_position_cm[frame],
+              motion.root_position_cm[4 * (slow.first_frame - 1 + frame)]);
+  }
+  const Motion whole = ResampleMotion(motion, 50);
+  const Motion part = ResampleMotion(CutMotion(motion, 10, 30), 50);
+  for (int frame = 0; frame < part.frame_count; ++frame) {
+    EXPECT_LT((part.root_position_cm[frame] - whole.root_position_cm[part.first_frame - 1 + frame])
+                  .norm(),
+              1e-9);
+  }
+}
+
+TEST(ResampleMotion, TakesTheFirstOfTooFewFrames) {
+  const Motion motion = Smooth(42, 120);
+  const Motion slow = ResampleMotion(CutMotion(motion, 5, 6), 30);  // 5 / 120 and 6 / 120 s.
+  ASSERT_EQ(slow.frame_count, 1);
+  EXPECT_EQ(slow.first_frame, 2);  // 4 / 120 s is nearer than 8 / 120 s.
+  EXPECT_EQ(slow.root_position_cm[0], motion.root_position_cm[5]);
+}
+
 // The formula itself in whole numbers: ⌊(n − 1) · 120 / 25⌋ + 1 = ⌊(n − 1) · 24 / 5⌋ + 1.
 TEST(ResampleMotion, HasAsManyFramesAsTheTimeHolds) {
   for (int frames = 1; frames < 60; ++frames) {

@@ -11,8 +11,10 @@ namespace kinebase {
 
 // Another rate: positions linear, rotations along the shortest arc between neighbours.
 //
-// Sample i stands for time i / rate_hz; the result has ⌊(frames − 1) · rate_hz / old⌋ + 1 frames.
-// The number of its first frame is the one that comes nearest to the same time.
+// Frame n stands for time (n − 1) / rate before and after, so that what is numbered keeps its time:
+// the first sample is the one at or after the first frame. Frames that begin with 1 give
+// ⌊(frames − 1) · rate_hz / old⌋ + 1 samples. Of frames too few to hold any sample the first is
+// taken.
 // Errors  InvalidArgument if rate_hz is not positive, the motion has no rate, or the result would
 //         have more frames than fit an int.
 [[nodiscard]] Motion ResampleMotion(const Motion& motion, double rate_hz);
