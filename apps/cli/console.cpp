@@ -112,14 +112,12 @@ void AddLoadOptions(CLI::App& command, CommonOptions& options) {
           "Axis that points up in the file, where it does not tell or tells wrong")
       ->check(OneOf({"x", "y", "z"}))
       ->type_name("x|y|z");
-  std::vector<std::string> source_units(kLengthUnits.begin(), kLengthUnits.end());
-  source_units.emplace_back(kAcclaimUnit);
   command
       .add_option("--source-units", options.load.units,
                   fmt::format("Unit of lengths in the file, where it does not tell or tells wrong: "
                               "{}",
-                              fmt::join(source_units, ", ")))
-      ->check(OneOf(source_units))
+                              fmt::join(kSourceUnits, ", ")))
+      ->check(OneOf({kSourceUnits.begin(), kSourceUnits.end()}))
       ->type_name("UNIT");
   command
       .add_option("--names", options.load.marker_names,

@@ -50,7 +50,13 @@ std::vector<FileInfo> FindFiles(const std::vector<std::filesystem::path>& paths)
     try {
       for (const auto& file : FindMotionFiles(std::span(&path, 1))) add(file);
     } catch (const Error& error) {
-      files.push_back({.path = path, .error = error});
+      const bool is_unknown = std::filesystem::is_regular_file(path, unreachable);
+      files.push_back({.path = path,
+                       .error = is_unknown ? Error(error.code(),
+                                                   fmt::format("{}; no motion, but known, too: {}",
+                                                               error.message(), OtherEndings()),
+                                                   error.place())
+                                           : error});
     }
   }
   return files;

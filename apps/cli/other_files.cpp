@@ -165,9 +165,13 @@ Json ReadScene(const fs::path& file) {
     fail("is no GLB: it does not begin with 'glTF' and a scene");
   }
   if (number_at(4) != 2) fail(fmt::format("has version {} of glTF; 2 is read", number_at(4)));
+  const std::size_t whole_size = number_at(8);
   const std::size_t size = number_at(kHeaderSize);
+  if (whole_size > text.size()) {
+    fail(fmt::format("is cut off: it has {} of {} bytes", text.size(), whole_size));
+  }
   text.remove_prefix(kHeaderSize + kChunkHeaderSize);
-  if (size > text.size()) fail("is cut off");
+  if (size > text.size()) fail("is damaged: its scene is longer than the file");
   Json scene = Json::parse(text.substr(0, size), nullptr, false);
   if (!scene.is_object()) fail("holds no scene that can be read");
   return scene;
@@ -183,6 +187,15 @@ double LastTime(const Json& scene) {
     }
   }
   return last_s;
+}
+
+// What Kinebase notes down about the recording; null in files of others.
+Json NoteOf(const Json& scene, const char* name) {
+  for (const Json& animation : scene.value("animations", Json::array())) {
+    const Json extras = animation.value("extras", Json::object());
+    if (extras.is_object() && extras.contains(name)) return extras.at(name);
+  }
+  return nullptr;
 }
 
 OtherFile ReadGlb(const fs::path& file, const LoadOptions& /*options*/) {
@@ -202,7 +215,16 @@ OtherFile ReadGlb(const fs::path& file, const LoadOptions& /*options*/) {
     info.contents = {{"generator", maker},
                      {"nodes", nodes},
                      {"animations", animations},
-                     {"last_time_s", last_s}};
+                     {"last_time_s", last_s},
+                     {"rate_hz", NoteOf(scene, "rate_hz")},
+                     {"first_frame", NoteOf(scene, "first_frame")}};
+    const auto note = [&](const char* title, const Json& value) {
+      if (value.is_number()) {
+        info.lines.emplace_back(title, fmt::format("{:g}", value.get<double>()));
+      }
+    };
+    note("rate", info.contents["rate_hz"]);
+    note("first", info.contents["first_frame"]);
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::kMalformedFile,
                 fmt::format("holds a scene that breaks glTF's rules: {}", error.what()), {file});
@@ -229,9 +251,19 @@ const Reader* FindReader(const fs::path& file) {
 
 bool IsOtherFile(const fs::path& file) { return FindReader(file) != nullptr; }
 
+std::string OtherEndings() {
+  std::string endings;
+  for (const Reader& reader : kReaders) {
+    endings.append(endings.empty() ? "" : ", ").append(reader.extension);
+  }
+  return endings;
+}
+
 OtherFile ReadOtherFile(const fs::path& file, const LoadOptions& options) {
   const Reader* const reader = FindReader(file);
   if (reader == nullptr) throw Error(ErrorCode::kInvalidArgument, "has no known ending", {file});
+  std::error_code unreachable;
+  if (!fs::exists(file, unreachable)) throw Error(ErrorCode::kNotFound, "does not exist", {file});
   try {
     return reader->read(file, options);
   } catch (const Error& error) {

@@ -20,6 +20,7 @@ struct OtherFile {
 
 // By the ending of its name: .asf, .mnm, .mot, .sto, .glb, .csv.
 [[nodiscard]] bool IsOtherFile(const std::filesystem::path& file);
+[[nodiscard]] std::string OtherEndings();  // ".asf, .mnm …".
 
 // Errors  NotFound, MalformedFile, IoFailure.
 [[nodiscard]] OtherFile ReadOtherFile(const std::filesystem::path& file,

@@ -68,6 +68,11 @@ std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
   std::error_code unreachable;  // A name that is too long, a link to itself: nothing is there.
   for (const fs::path& path : paths) {
     if (!fs::exists(path, unreachable)) {
+      const TakeStretch stretch = ParseTakeStretch(path.string());
+      if (stretch.first_frame != 0 && fs::exists(stretch.file, unreachable)) {
+        throw Error(ErrorCode::kInvalidArgument,
+                    "whole files are taken here; kinebase convert makes one of a stretch", {path});
+      }
       throw Error(ErrorCode::kNotFound, "does not exist", {path});
     }
     if (fs::is_directory(path, unreachable)) {

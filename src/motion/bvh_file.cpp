@@ -62,6 +62,17 @@ std::string FormatRecord(const BvhMotion& bvh, double rate_hz, Diagnostics& diag
   return FormatBvh(corrected);
 }
 
+// The file tells neither unit nor axis: what readers will take it for, if that is not what it is.
+void ReportWrongGuess(const BvhMotion& bvh, const BvhWriteOptions& world, double rate_hz,
+                      Diagnostics& diagnostics) {
+  Diagnostics ignored;
+  const BvhFigure guess = BuildFigure(bvh, {.rate_hz = rate_hz}, ignored);
+  Untold untold;
+  if (guess.up_axis != world.up_axis) untold.up = world.up_axis;
+  if (CentimetresIn(guess.units) != CentimetresIn(world.units)) untold.units = world.units;
+  ReportUntold(untold, "BVH", diagnostics);
+}
+
 }  // namespace
 
 Recording LoadBvh(const std::filesystem::path& path, const LoadOptions& options) {
@@ -103,7 +114,6 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
   }
   if (!options.units.empty()) write.units = options.units;
   if (options.up_axis) write.up_axis = *options.up_axis;
-  if (write.up_axis == UpAxis::kX) ReportUntold({.up = write.up_axis}, "BVH", diagnostics);
   if (recording.first_frame() != 1) {
     diagnostics.push_back(
         {Severity::kInfo,
@@ -111,12 +121,17 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
                      recording.first_frame())});
   }
   if (record != nullptr && !WantsOtherWorld(recording, options)) {
-    WriteFile(path, FormatRecord(*record, recording.rate_hz(), diagnostics), options.overwrite);
+    const std::string text = FormatRecord(*record, recording.rate_hz(), diagnostics);
+    ReportWrongGuess(*record, write, recording.rate_hz(), diagnostics);
+    WriteFile(path, text, options.overwrite);
     return;
   }
   BvhMotion bvh = ToBvh(recording.motion, write, diagnostics);
-  if (record != nullptr) ReportRecordLoss(recording, "BVH in another world", diagnostics);
-  if (record != nullptr) SetFrameTime(*record, recording.rate_hz(), bvh);
+  if (record != nullptr) {
+    ReportRecordLoss(recording, "BVH in another world", diagnostics);
+    SetFrameTime(*record, recording.rate_hz(), bvh);
+  }
+  ReportWrongGuess(bvh, write, recording.rate_hz(), diagnostics);
   WriteFile(path, FormatBvh(bvh), options.overwrite);
 }
 

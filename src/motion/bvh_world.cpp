@@ -143,9 +143,7 @@ void ReportMissingBones(const RawFigure& figure, Diagnostics& diagnostics) {
 
 std::string GuessUnits(const RawFigure& figure, UpAxis up, Diagnostics& diagnostics) {
   const double stature = EstimateStature(figure, up);
-  std::vector<std::string_view> units(kLengthUnits.begin(), kLengthUnits.end());
-  units.push_back(kAcclaimUnit);
-  for (const std::string_view unit : units) {  // No stature is human in two of them.
+  for (const std::string_view unit : kSourceUnits) {  // No stature is human in two of them.
     const double stature_cm = stature * CentimetresInOrFail(unit);
     if (stature_cm < kSmallestStatureCm || stature_cm > kLargestStatureCm) continue;
     diagnostics.push_back(

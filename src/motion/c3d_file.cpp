@@ -110,7 +110,7 @@ void SaveC3d(const Recording& recording, const std::filesystem::path& path,
     std::vector<std::string> labels;
     const std::vector<std::string> all = PointLabels(c3d);
     for (const std::size_t i : PlacesAmongPoints(c3d)) labels.push_back(all[i]);
-    SetMarkerLabels(c3d, CustomLabels(labels, names));
+    SetMarkerLabels(c3d, CustomLabels(labels, names, diagnostics));
   }
   WriteFile(path, FormatC3d(c3d), options.overwrite);
 }

@@ -109,7 +109,7 @@ void SaveCsm(const Recording& recording, const std::filesystem::path& path,
   CsmRecording csm = RecordToWrite(recording, path, diagnostics);
   if (!options.marker_names.empty()) {
     const MarkerNames names = ReadMarkerNames(options.marker_names, false, diagnostics);
-    csm.labels = CustomLabels(csm.labels, names);
+    csm.labels = CustomLabels(csm.labels, names, diagnostics);
   }
   ReportFilledSamples(recording.markers, "CSM", diagnostics);
   ReportRecordLoss(recording, "CSM", diagnostics);

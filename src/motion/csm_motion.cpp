@@ -77,6 +77,27 @@ void Append(std::string& list, const std::string& item) {
   list.append(list.empty() ? "" : ", ").append(item);
 }
 
+// What is odd about markers that were named by a table, `fitting` of which have a row there.
+void ReportNaming(const MarkerNames& names, std::span<const std::string> before,
+                  std::size_t fitting, const std::vector<std::string>& after,
+                  Diagnostics& diagnostics) {
+  if (fitting == 0 && !names.rows.empty() && !before.empty()) {
+    diagnostics.push_back(
+        {Severity::kWarning,
+         fmt::format("the marker names fit none of the file's markers; a line is what a marker is "
+                     "and then what the file calls it, as {}",
+                     Quoted(BareLabel(before.front())))});
+  }
+  std::set<std::string> seen;
+  std::string repeated;
+  for (const auto& label : after) {
+    if (!seen.insert(ToLower(label)).second) Append(repeated, Quoted(label));
+  }
+  if (!repeated.empty() && !std::ranges::equal(before, after)) {
+    diagnostics.push_back({Severity::kWarning, "more than one marker is called " + repeated});
+  }
+}
+
 }  // namespace
 
 MarkerCloud BuildMarkers(const CsmRecording& csm, const CsmBuildOptions& options,
@@ -136,28 +157,17 @@ std::vector<std::string> PresetLabels(std::span<const std::string> labels, const
                                       Diagnostics& diagnostics) {
   std::vector<std::string> result;
   std::string bands;
-  bool any = names.rows.empty() || labels.empty();
+  std::size_t fitting = 0;
   for (const auto& label : labels) {
     auto preset = names.PresetName(label);
     if (!preset) preset = names.PresetName(BareLabel(label));
-    if (!preset) {
-      result.push_back(label);
-      continue;
-    }
-    any = true;
-    if (const auto band = BandOfStick(*preset); band && EqualsIgnoringCase(*band, label)) {
+    if (preset) ++fitting;
+    const auto band = preset ? BandOfStick(*preset) : std::nullopt;
+    if (band && EqualsIgnoringCase(*band, label)) {
       Append(bands, fmt::format("{} for {}", Quoted(label), Quoted(*preset)));
-      result.push_back(label);
-      continue;
+      preset.reset();
     }
-    result.emplace_back(*preset);
-  }
-  if (!any) {
-    diagnostics.push_back(
-        {Severity::kWarning,
-         fmt::format("the marker names fit none of the file's markers; a line is what a marker is "
-                     "and then what the file calls it, as {}",
-                     Quoted(BareLabel(labels.front())))});
+    result.emplace_back(preset.value_or(label));
   }
   if (!bands.empty()) {
     diagnostics.push_back(
@@ -165,25 +175,21 @@ std::vector<std::string> PresetLabels(std::span<const std::string> labels, const
                                       "the band keeps its names, as it stands elsewhere",
                                       bands)});
   }
-  std::set<std::string> seen;
-  std::string repeated;
-  for (const auto& label : result) {
-    if (!seen.insert(ToLower(label)).second) Append(repeated, Quoted(label));
-  }
-  if (!repeated.empty() && result != std::vector(labels.begin(), labels.end())) {
-    diagnostics.push_back({Severity::kWarning, "more than one marker is called " + repeated});
-  }
+  ReportNaming(names, labels, fitting, result, diagnostics);
   return result;
 }
 
-std::vector<std::string> CustomLabels(std::span<const std::string> labels,
-                                      const MarkerNames& names) {
+std::vector<std::string> CustomLabels(std::span<const std::string> labels, const MarkerNames& names,
+                                      Diagnostics& diagnostics) {
   std::vector<std::string> result;
+  std::size_t fitting = 0;
   for (const auto& label : labels) {
     auto custom = names.CustomName(label);
     if (!custom) custom = names.CustomName(BareLabel(label));
+    if (custom) ++fitting;
     result.emplace_back(custom.value_or(label));
   }
+  ReportNaming(names, labels, fitting, result, diagnostics);
   return result;
 }
 

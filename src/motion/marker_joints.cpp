@@ -48,9 +48,7 @@ class MarkerTracks {
     const auto known = tracks_.find(name);
     if (known != tracks_.end()) return known->second ? &*known->second : nullptr;
     auto& track = tracks_[name];
-    const auto labels = set_.labels.find(name);
-    const MarkerSet::Names own = {name};
-    for (const std::string& label : labels == set_.labels.end() ? own : labels->second) {
+    for (const std::string& label : set_.LabelsOf(name)) {
       const auto marker = markers_.FindMarker(label);
       if (marker) track = Load(*marker);
       if (track) break;

@@ -47,11 +47,12 @@ class MarkerSetReader {
                   {file_, error.source().begin.line});
     }
     CheckHeader(root);
-    CheckKeys(root, {"format", "version", "name", "size", "markers", "axes", "joint"});
+    CheckKeys(root, {"format", "version", "name", "size", "markers", "axes", "rigid", "joint"});
     set_.name = Text(root, "name");
     ReadSize(root);
     ReadLabels(root);
     ReadAxes(root);
+    ReadRigid(root);
     ReadJoints(root);
     return std::move(set_);
   }
@@ -141,6 +142,14 @@ class MarkerSetReader {
     }
   }
 
+  void ReadRigid(const toml::table& root) {
+    const toml::node* node = root.get("rigid");
+    if (node == nullptr) return;
+    for (const auto& [bone, markers] : Table(*node, "rigid")) {
+      set_.rigid[std::string(bone.str())] = Names(markers, &markers, bone.str());
+    }
+  }
+
   // TOML tables are sorted by key; which axis is exact is told by their place in the file.
   MarkerSet::Axes ReadAxisPair(const toml::table& table) const {
     CheckKeys(table, {"left", "up", "forward"});
@@ -205,6 +214,11 @@ class MarkerSetReader {
 };
 
 }  // namespace
+
+MarkerSet::Names MarkerSet::LabelsOf(const std::string& marker) const {
+  const auto entry = labels.find(marker);
+  return entry == labels.end() ? Names{marker} : entry->second;
+}
 
 MarkerSet ParseMarkerSet(std::string_view text, const std::filesystem::path& file) {
   return MarkerSetReader(file).Read(text);

@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fmt/format.h"
+#include "fmt/ranges.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/motion/kinematics.h"
+#include "kinebase/motion/loose_markers.h"
 #include "kinebase/motion/marker_joints.h"
 #include "kinebase/motion/motion_editing.h"
 #include "motion/file_formats.h"
@@ -90,11 +91,7 @@ AcclaimRecord Cut(const AcclaimRecord& record, int first, int last) {
   return cut;
 }
 
-BvhMotion Cut(BvhMotion bvh, int first, int last) {
-  Keep(bvh.values, bvh.column_count, first, last);
-  bvh.declared_frame_count = last - first + 1;
-  return bvh;
-}
+BvhMotion Cut(const BvhMotion& bvh, int first, int last) { return CutBvh(bvh, first, last); }
 
 C3dRecording Cut(const C3dRecording& c3d, int first, int last) { return CutC3d(c3d, first, last); }
 
@@ -111,31 +108,29 @@ TrcRecording Cut(TrcRecording trc, int first, int last) {
   return trc;
 }
 
-// A gap across the first frame of a cut is filled from frames that the cut does not have, so the
-// record would be read as another motion.
-bool BeginsInAGap(const FileRecord& record, int first) {
-  const auto frame = static_cast<std::size_t>(first);
-  const auto has_gap = [&](const std::vector<double>& values, std::size_t columns) {
-    const auto row = std::span(values).subspan(frame * columns, columns);
-    return std::ranges::any_of(row, [](double value) { return std::isnan(value); });
-  };
-  if (const auto* acclaim = std::get_if<AcclaimRecord>(&record)) {
-    return has_gap(acclaim->amc.values, acclaim->amc.column_count);
-  }
-  const auto* bvh = std::get_if<BvhMotion>(&record);
-  return bvh != nullptr && has_gap(bvh->values, bvh->column_count);
-}
-
 std::shared_ptr<const FileRecord> CutRecord(const FileRecord& record, int first, int last) {
   return std::visit(
       [&](const auto& each) { return std::make_shared<const FileRecord>(Cut(each, first, last)); },
       record);
 }
 
+std::span<const MarkerSet> SetsFor(const Recording& recording) {
+  return recording.marker_set ? std::span(recording.marker_set.get(), 1) : BuiltInMarkerSets();
+}
+
 MarkerJoints JointsFromMarkers(const Recording& recording, Diagnostics& diagnostics) {
-  const auto sets =
-      recording.marker_set ? std::span(recording.marker_set.get(), 1) : BuiltInMarkerSets();
-  return ApproximateJoints(recording.markers, sets, diagnostics);
+  return ApproximateJoints(recording.markers, SetsFor(recording), diagnostics);
+}
+
+void ReportLooseMarkers(const Recording& recording, Diagnostics& diagnostics) {
+  for (const LooseMarker& loose : FindLooseMarkers(recording.markers, SetsFor(recording))) {
+    diagnostics.push_back(
+        {Severity::kWarning,
+         fmt::format("marker {} does not keep its distance from {}: up to {:.0f} cm off, in {} of "
+                     "frames {} to {}; joints near it are wrong there",
+                     loose.label, fmt::join(loose.others, ", "), loose.farthest_cm, loose.frames,
+                     recording.first_frame() + loose.first, recording.first_frame() + loose.last)});
+  }
 }
 
 template <typename Function>
@@ -279,7 +274,10 @@ JointTrajectories StandardJoints(const Recording& recording, Diagnostics& diagno
 
 std::vector<JointSource> FindStandardJoints(const Recording& recording, Diagnostics& diagnostics) {
   return NamingTheFile(recording, [&] {
-    if (!recording.has_skeleton()) return JointsFromMarkers(recording, diagnostics).sources;
+    if (!recording.has_skeleton()) {
+      ReportLooseMarkers(recording, diagnostics);
+      return JointsFromMarkers(recording, diagnostics).sources;
+    }
     const Skeleton& skeleton = *recording.motion.skeleton;
     CheckStandardJoints(skeleton);  // What is known of the file's joints may be too few.
     if (!recording.joint_sources.empty()) return recording.joint_sources;
@@ -301,13 +299,7 @@ Recording CutRecording(const Recording& recording, int first, int last) {
   } else {
     cut.markers = CutMarkers(recording.markers, first, last);
   }
-  if (recording.record == nullptr) return cut;
-  if (BeginsInAGap(*recording.record, first)) {
-    internal::ReportRecordLoss(recording, "a stretch that begins in a gap", cut.diagnostics,
-                               {internal::Extra::kSkeletonSource});
-  } else {
-    cut.record = CutRecord(*recording.record, first, last);
-  }
+  if (recording.record != nullptr) cut.record = CutRecord(*recording.record, first, last);
   return cut;
 }
 

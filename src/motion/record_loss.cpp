@@ -10,6 +10,7 @@
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/c3d_motion.h"
 
 namespace kinebase::internal {
 namespace {
@@ -29,6 +30,37 @@ bool IsOfTheFormat(std::string_view group) {
       kGroups, [&](std::string_view each) { return EqualsIgnoringCase(each, group); });
 }
 
+// Says how points are stored or numbered, and is not lost with them.
+bool IsOfPoints(const C3dGroup& group, const C3dParameter& parameter) {
+  constexpr std::array<std::string_view, 12> kOfPoints = {"USED",
+                                                          "SCALE",
+                                                          "RATE",
+                                                          "DATA_START",
+                                                          "FRAMES",
+                                                          "LONG_FRAMES",
+                                                          "UNITS",
+                                                          "LABELS",
+                                                          "X_SCREEN",
+                                                          "Y_SCREEN",
+                                                          "ACTUAL_START_FIELD",
+                                                          "ACTUAL_END_FIELD"};
+  if (!EqualsIgnoringCase(group.name, "POINT") && !EqualsIgnoringCase(group.name, "TRIAL")) {
+    return true;
+  }
+  // LABELS2 and so on hold those beyond the 255th.
+  const std::string name =
+      ToLower(parameter.name).substr(0, parameter.name.find_last_not_of("0123456789") + 1);
+  return std::ranges::any_of(kOfPoints,
+                             [&](std::string_view each) { return EqualsIgnoringCase(each, name); });
+}
+
+// A text that is there and blank, as descriptions mostly are.
+bool IsBlank(const C3dParameter& parameter) {
+  if (parameter.size() == 0) return true;
+  const std::vector<std::string> texts = parameter.Strings();
+  return !texts.empty() && std::ranges::all_of(texts, &std::string::empty);
+}
+
 Contents ContentsOf(const C3dRecording& c3d, Carried carried) {
   Contents contents;
   if (c3d.channel_count > 0 && !Carries(carried, Extra::kAnalog)) {
@@ -41,10 +73,23 @@ Contents ContentsOf(const C3dRecording& c3d, Carried carried) {
     contents.push_back(fmt::format("{} force plates", plates));
   }
   if (c3d.point_count > 0) contents.emplace_back("residuals");
-  Contents groups;
-  for (const C3dGroup& group : c3d.groups) {
-    if (!IsOfTheFormat(group.name) && !group.parameters.empty()) groups.push_back(group.name);
+  const std::size_t other_points = c3d.point_count - PlacesAmongPoints(c3d).size();
+  if (other_points > 0) {
+    contents.push_back(fmt::format("{} points that are angles, forces and the like", other_points));
   }
+  Contents groups;
+  Contents in_part;
+  for (const C3dGroup& group : c3d.groups) {
+    if (!IsOfTheFormat(group.name)) {
+      if (!group.parameters.empty()) groups.push_back(group.name);
+      continue;
+    }
+    const auto is_lost = [&](const C3dParameter& parameter) {
+      return !IsOfPoints(group, parameter) && !IsBlank(parameter);
+    };
+    if (std::ranges::any_of(group.parameters, is_lost)) in_part.push_back("some of " + group.name);
+  }
+  groups.insert(groups.end(), in_part.begin(), in_part.end());
   if (!groups.empty()) {
     contents.push_back(fmt::format("parameters of {}", fmt::join(groups, ", ")));
   }
@@ -54,6 +99,7 @@ Contents ContentsOf(const C3dRecording& c3d, Carried carried) {
 Contents ContentsOf(const CsmRecording& csm, Carried /*carried*/) {
   Contents contents;
   if (csm.talent) contents.emplace_back("the performer's sizes");
+  if (csm.spine_links) contents.emplace_back("the number of spine links");
   if (!csm.actor.empty()) contents.emplace_back("the performer's name");
   if (!csm.capture_date.empty() || !csm.capture_time.empty()) {
     contents.emplace_back("date and time");
@@ -70,6 +116,19 @@ bool HasUnknownLines(const AsfSkeleton& asf) {
          std::ranges::any_of(asf.bones, [](const AsfBone& bone) { return !bone.unknown.empty(); });
 }
 
+// A keyword that says how the numbers are meant, as the reader took them.
+bool IsUnderstood(std::string_view keyword) {
+  constexpr std::array<std::string_view, 4> kKeywords = {":fully-specified", ":degrees", ":radians",
+                                                         ":force-all-joints-be-3dof"};
+  return std::ranges::any_of(
+      kKeywords, [&](std::string_view each) { return EqualsIgnoringCase(each, keyword); });
+}
+
+bool IsUnknown(std::string_view line) {
+  const std::vector<std::string_view> words = SplitTokens(line.substr(0, line.find('#')));
+  return !std::ranges::all_of(words, IsUnderstood);
+}
+
 Contents ContentsOf(const SkeletonSource& source) {
   Contents contents;
   if (!source.documentation.empty()) contents.emplace_back("the skeleton's documentation");
@@ -79,13 +138,18 @@ Contents ContentsOf(const SkeletonSource& source) {
 
 Contents ContentsOf(const AcclaimRecord& record, Carried /*carried*/) {
   Contents contents;
-  const auto is_comment = [](const std::string& line) { return line.starts_with('#'); };
-  if (!record.asf.comments.empty() || std::ranges::any_of(record.amc.header, is_comment) ||
-      !record.amc.remarks.empty()) {
+  std::vector<std::string> lines = record.amc.header;
+  for (const AmcMotion::Remark& remark : record.amc.remarks) lines.push_back(remark.text);
+  const auto has_comment = [](const std::string& line) { return line.find('#') != line.npos; };
+  if (!record.asf.comments.empty() || std::ranges::any_of(lines, has_comment)) {
     contents.emplace_back("comments");
   }
-  if (HasUnknownLines(record.asf))
+  if (HasUnknownLines(record.asf)) {
     contents.emplace_back("lines of the ASF that are not understood");
+  }
+  if (std::ranges::any_of(lines, IsUnknown)) {
+    contents.emplace_back("lines of the AMC that are not understood");
+  }
   return contents;
 }
 

@@ -49,13 +49,11 @@ TrcRecording RecordToWrite(const Recording& recording, const std::filesystem::pa
                            const SaveOptions& options, Diagnostics& diagnostics) {
   const auto* kept = recording.record ? std::get_if<TrcRecording>(recording.record.get()) : nullptr;
   TrcWriteOptions write{.file_name = path.filename().string()};
-  if (kept != nullptr) {
-    write.units = recording.units;
-    write.up = ParseUpAxis(recording.up_axis).value_or(write.up);
-  }
+  write.up = UpAxisToWrite(recording, options);
+  if (kept != nullptr) write.units = recording.units;
   const bool same_units =
       options.units.empty() || CentimetresIn(options.units) == CentimetresIn(write.units);
-  if (kept != nullptr && same_units && options.up_axis.value_or(write.up) == write.up) {
+  if (kept != nullptr && same_units && ToString(write.up) == recording.up_axis) {
     TrcRecording trc = *kept;
     trc.labels = recording.markers.labels;
     // What was taken on the user's word, or because the file does not tell.
@@ -65,7 +63,6 @@ TrcRecording RecordToWrite(const Recording& recording, const std::filesystem::pa
     return trc;
   }
   if (!options.units.empty()) write.units = options.units;
-  write.up = options.up_axis.value_or(write.up);
   TrcRecording trc = ToTrc(PointsOf(recording, diagnostics), write, diagnostics);
   if (kept == nullptr) return trc;
   TrcRecording with_all = *kept;
@@ -103,8 +100,8 @@ void SaveTrc(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
   TrcRecording trc = RecordToWrite(recording, path, options, diagnostics);
   if (!options.marker_names.empty()) {
-    trc.labels =
-        CustomLabels(trc.labels, ReadMarkerNames(options.marker_names, false, diagnostics));
+    const MarkerNames names = ReadMarkerNames(options.marker_names, false, diagnostics);
+    trc.labels = CustomLabels(trc.labels, names, diagnostics);
   }
   ReportFilledSamples(recording.markers, "TRC", diagnostics);
   ReportRecordLoss(recording, "TRC", diagnostics);

@@ -171,8 +171,10 @@ TEST(Info, ReadsWhatIsNoMotionByItself) {
              "first_time_s:number", "last_time_s:number", "rate_hz:number"}},
            {out + ".glb",
             "GLB",
-            {"  nodes     ", "root, ", "  animation 0.100 s\n"},
-            {"generator:string", "nodes:array", "animations:integer", "last_time_s:number"}},
+            {"  nodes     ", "root, ", "  animation 0.100 s\n", "  rate      120\n",
+             "  first     1\n"},
+            {"generator:string", "nodes:array", "animations:integer", "last_time_s:number",
+             "rate_hz:number", "first_frame:number"}},
            {out + ".csv",
             "CSV",
             {"  rows      13\n", ": frame, time_s, root_x", "120 rows a second\n"},
@@ -192,7 +194,8 @@ TEST(Info, ReadsWhatIsNoMotionByItself) {
     const auto recording = InfoOf(library.Squat());
     for (const auto& [name, value] : recording.items()) EXPECT_TRUE(info.contains(name)) << name;
     // Beside others it has a row of the table.
-    EXPECT_THAT(RunKinebase({"info", file, library.Squat()}).out, ContainsRegex("a?.* " + format));
+    EXPECT_THAT(RunKinebase({"info", file, library.Squat()}).out,
+                ContainsRegex(file + " +" + format + "[ \n]"));
   }
 }
 
@@ -212,13 +215,24 @@ TEST(Info, SaysWhatIsWrongWithWhatIsNoMotion) {
            {"a.csv", "frame,time_s\n1,soon\n", "a.csv:2: time_s is 'soon'"},
            {"a.glb", "glTF", "is no GLB"},
            {"b.glb", "glTF\1\0\0\0\0\0\0\0\0\0\0\0JSON"s, "version 1"},
-           {"c.glb", "glTF\2\0\0\0\0\0\0\0\xFF\xFF\xFF\xFFJSON"s, "is cut off"},
+           {"c.glb", "glTF\2\0\0\0\0\0\0\0\xFF\xFF\xFF\xFFJSON"s, "its scene is longer"},
+           {"f.glb", "glTF\2\0\0\0\x40\0\0\0\2\0\0\0JSON{}"s, "is cut off: it has 22 of 64 bytes"},
            {"d.glb", "glTF\2\0\0\0\0\0\0\0\2\0\0\0JSON[["s, "no scene"},
            {"e.glb", "glTF\2\0\0\0\0\0\0\0\x0D\0\0\0JSON{\"nodes\":[7]}"s, "breaks glTF's rules"},
        }) {
     SCOPED_TRACE(name);
     WriteText(folder / name, text);
     ExpectOneError(RunKinebase({"info", folder / name, "-q"}), 1, {message});
+  }
+  WriteText(folder / "a.xyz", "");
+  const std::string squat = library.Squat();
+  for (const auto& [file, message] : std::vector<std::pair<std::string, std::string>>{
+           {folder / "nothing.csv", "nothing.csv: does not exist"},
+           {folder / "a.xyz", ".amc (ASF/AMC), .c3d (C3D)"},
+           {folder / "a.xyz", "known, too: .asf, .mnm"},
+           {squat + ":1-10", "whole files are taken here"},
+       }) {
+    ExpectOneError(RunKinebase({"info", file, "-q"}), 1, {message});
   }
 }
 

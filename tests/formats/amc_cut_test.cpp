@@ -37,6 +37,16 @@ TEST(CutAmc, TakesOneFrameAndAll) {
   EXPECT_EQ(all, take);
 }
 
+// The gap at frame 12 is filled from frame 9 when the whole is read; that at the start of the other
+// take from the first frame that has the value.
+TEST(CutAmc, FillsTheFirstFrameAsReadersOfTheWholeDo) {
+  EXPECT_THAT(CutAmc(ParseAmc(kTake, "take.amc"), 2, 3).values, ElementsAre(7, 8, 6, 10, 11, 12));
+  const AmcMotion late = ParseAmc(":DEGREES\n1\nhand nan\n2\nhand nan\n3\nhand 5\n", "late.amc");
+  EXPECT_THAT(CutAmc(late, 1, 1).values, ElementsAre(5));
+  const AmcMotion never = ParseAmc(":DEGREES\n1\nhand nan\n2\nhand nan\n", "never.amc");
+  EXPECT_THAT(CutAmc(never, 1, 1).values, ElementsAre(testing::IsNan()));
+}
+
 TEST(CutAmc, RefusesARangeThatIsEmptyOrLeavesTheMotion) {
   const AmcMotion take = ParseAmc(kTake, "take.amc");
   for (const auto& [first, last] : {std::pair{-1, 2}, {2, 1}, {0, 4}, {4, 4}}) {

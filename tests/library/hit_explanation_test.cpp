@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinebase/core/error.h"
+#include "library/one_feature_takes.h"
 #include "support/files.h"
 
 namespace kinebase {
@@ -11,26 +12,12 @@ namespace {
 
 using testing::HasSubstr;
 
-// A take at 120 Hz, four frames a column, whose one feature holds in columns 10 to 14 and 30 to 33.
-TakeFeatures MakeTake() {
-  TakeFeatures take{.path = "take.amc", .rate_hz = 120, .frame_count = 4 * 50 - 1};
-  take.features = {.rate_hz = 30, .feature_count = 1};
-  for (int c = 0; c < 50; ++c) {
-    take.features.columns.push_back((c >= 10 && c <= 14) || (c >= 30 && c <= 33) ? 1 : 0);
-  }
-  return take;
-}
+using test::OneFeatureTemplate;
 
-// "0, then five times 1, then 0".
-QuantizedTemplate MakeTemplate() {
-  TemplateMatrix matrix{.rate_hz = 30, .feature_count = 1};
-  matrix.values = {0, 1, 1, 1, 1, 1, 0};
-  matrix.weights.assign(7, 1);
-  return Quantize(matrix, 0.1, Profile::kBonn);
-}
+TakeFeatures MakeTake() { return test::OneFeatureTake(50, {{10, 14}, {30, 33}}); }
 
 TEST(HitExplanation, IsThatOfTheBestHitUnlessOneIsNamed) {
-  const HitExplanation best = ExplainHit(MakeTemplate(), MakeTake());
+  const HitExplanation best = ExplainHit(OneFeatureTemplate(), MakeTake());
   // Columns 9 to 15 are frames 37 to 64.
   EXPECT_EQ(best.hit.first_frame, 37);
   EXPECT_EQ(best.hit.last_frame, 64);
@@ -41,19 +28,19 @@ TEST(HitExplanation, IsThatOfTheBestHitUnlessOneIsNamed) {
 
 TEST(HitExplanation, IsThatOfAnyHitOfASearch) {
   const std::vector<TakeFeatures> takes = {MakeTake()};
-  const std::vector<TakeHit> hits = SearchTakes(MakeTemplate(), takes, {.tau = 1});
+  const std::vector<TakeHit> hits = SearchTakes(OneFeatureTemplate(), takes, {.tau = 1});
   ASSERT_GT(hits.size(), 1);
   for (const TakeHit& hit : hits) {
-    EXPECT_EQ(ExplainHit(MakeTemplate(), takes[0], hit.last_frame).hit, hit);
+    EXPECT_EQ(ExplainHit(OneFeatureTemplate(), takes[0], hit.last_frame).hit, hit);
   }
   // Any frame of a column stands for it.
-  EXPECT_EQ(ExplainHit(MakeTemplate(), takes[0], 62).hit.last_frame, 64);
-  EXPECT_EQ(ExplainHit(MakeTemplate(), takes[0], 199).hit.last_frame, 199);
+  EXPECT_EQ(ExplainHit(OneFeatureTemplate(), takes[0], 62).hit.last_frame, 64);
+  EXPECT_EQ(ExplainHit(OneFeatureTemplate(), takes[0], 199).hit.last_frame, 199);
 }
 
 TEST(HitExplanation, NeedsAPathThere) {
   const auto error_of = [](std::int64_t frame) {
-    return test::ErrorOf([&] { (void)ExplainHit(MakeTemplate(), MakeTake(), frame); });
+    return test::ErrorOf([&] { (void)ExplainHit(OneFeatureTemplate(), MakeTake(), frame); });
   };
   EXPECT_EQ(error_of(8).code(), ErrorCode::kNotFound);
   EXPECT_THAT(error_of(8).what(), HasSubstr("nothing that ends at frame 8"));
@@ -61,7 +48,7 @@ TEST(HitExplanation, NeedsAPathThere) {
   EXPECT_THAT(error_of(200).what(), HasSubstr("take.amc: has frames 1 to 199, not 200"));
   TakeFeatures brief = MakeTake();
   brief.features.columns.resize(2);
-  EXPECT_THAT(test::ErrorOf([&] { (void)ExplainHit(MakeTemplate(), brief); }).what(),
+  EXPECT_THAT(test::ErrorOf([&] { (void)ExplainHit(OneFeatureTemplate(), brief); }).what(),
               HasSubstr("too short"));
 }
 

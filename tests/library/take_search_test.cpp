@@ -2,29 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include "library/one_feature_takes.h"
+
 namespace kinebase {
 namespace {
 
-// A take at 120 Hz whose one feature is 1 in columns first … last of its matrix at 30 Hz.
-TakeFeatures MakeTake(int columns, int first, int last) {
-  TakeFeatures take{.path = "take.amc", .rate_hz = 120, .frame_count = 4 * columns - 1};
-  take.features = {.rate_hz = 30, .feature_count = 1};
-  for (int c = 0; c < columns; ++c)
-    take.features.columns.push_back(first <= c && c <= last ? 1 : 0);
-  return take;
-}
-
-// "0, then five times 1, then 0".
-QuantizedTemplate MakeTemplate() {
-  TemplateMatrix matrix{.rate_hz = 30, .feature_count = 1};
-  matrix.values = {0, 1, 1, 1, 1, 1, 0};
-  matrix.weights.assign(7, 1);
-  return Quantize(matrix, 0.1, Profile::kBonn);
-}
+using test::OneFeatureTake;
+using test::OneFeatureTemplate;
 
 TEST(TakeSearch, GivesFramesAndSecondsOfTheTake) {
-  const std::vector<TakeFeatures> takes = {MakeTake(20, 30, 40), MakeTake(20, 10, 14)};
-  const std::vector<TakeHit> hits = SearchTakes(MakeTemplate(), takes, {.tau = 0});
+  const std::vector<TakeFeatures> takes = {OneFeatureTake(20, {{30, 40}}),
+                                           OneFeatureTake(20, {{10, 14}})};
+  const std::vector<TakeHit> hits = SearchTakes(OneFeatureTemplate(), takes, {.tau = 0});
   ASSERT_EQ(hits.size(), 1);
   EXPECT_EQ(hits[0].take, 1);
   EXPECT_EQ(hits[0].cost, 0);
@@ -36,13 +25,15 @@ TEST(TakeSearch, GivesFramesAndSecondsOfTheTake) {
 }
 
 TEST(TakeSearch, EndsWithTheTake) {
-  const std::vector<TakeFeatures> takes = {MakeTake(16, 10, 14)};
-  const std::vector<TakeHit> hits = SearchTakes(MakeTemplate(), takes, {.tau = 0});
+  const std::vector<TakeFeatures> takes = {OneFeatureTake(16, {{10, 14}})};
+  const std::vector<TakeHit> hits = SearchTakes(OneFeatureTemplate(), takes, {.tau = 0});
   ASSERT_EQ(hits.size(), 1);
   EXPECT_EQ(hits[0].last_frame, takes[0].frame_count);  // 63: its last column has three frames.
 }
 
-TEST(TakeSearch, FindsNothingInNothing) { EXPECT_TRUE(SearchTakes(MakeTemplate(), {}).empty()); }
+TEST(TakeSearch, FindsNothingInNothing) {
+  EXPECT_TRUE(SearchTakes(OneFeatureTemplate(), {}).empty());
+}
 
 }  // namespace
 }  // namespace kinebase

@@ -81,9 +81,10 @@ struct AmcReadOptions {
 // ParseAmc(FormatAmc(m)) == m.
 [[nodiscard]] std::string FormatAmc(const AmcMotion& motion);
 
-// Frames first … last (0-based, inclusive) with the header, values as they are. Frame numbers begin
-// at 1 and keep their jumps, as in the clips that come with HDM05. Remarks go with their frames;
-// diagnostics stay with the whole.
+// Frames first … last (0-based, inclusive) with the header, values as they are; those that the
+// first frame lacks are what readers of the whole fill in there, the last ones before, or else the
+// first ones after. Frame numbers begin at 1 and keep their jumps, as in the clips that come with
+// HDM05. Remarks go with their frames; diagnostics stay with the whole.
 // Errors  InvalidArgument if the range is empty or leaves the motion.
 [[nodiscard]] AmcMotion CutAmc(const AmcMotion& motion, std::int64_t first, std::int64_t last);
 

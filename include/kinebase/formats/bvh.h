@@ -107,4 +107,8 @@ struct BvhReadOptions {
 // Errors  InvalidArgument if the joints are not depth first.
 [[nodiscard]] std::string FormatBvh(const BvhMotion& motion);
 
+// Frames first … last (0-based, inclusive), gaps as in CutAmc; diagnostics stay with the whole.
+// Errors  InvalidArgument if the range is empty or leaves the motion.
+[[nodiscard]] BvhMotion CutBvh(const BvhMotion& motion, std::int64_t first, std::int64_t last);
+
 }  // namespace kinebase

@@ -46,8 +46,10 @@ struct CsmBuildOptions {
                                                     Diagnostics& diagnostics);
 
 // The way back: the preset's names as the file calls them. A subject's prefix goes.
+// diagnostics  Names that fit none of the labels; labels that another one has already.
 [[nodiscard]] std::vector<std::string> CustomLabels(std::span<const std::string> labels,
-                                                    const MarkerNames& names);
+                                                    const MarkerNames& names,
+                                                    Diagnostics& diagnostics);
 
 // What Character Studio would miss: required markers that are not there, and what is then known
 // less well (a warning); optional ones, names that the preset lacks (infos).

@@ -45,6 +45,9 @@ struct MarkerSet {
   std::map<std::string, Names, std::less<>> labels;  // Of a marker; itself if it has no entry.
   std::map<std::string, Axes, std::less<>> axes;
   std::vector<JointRow> joints;  // Of several for one joint the first counts whose markers exist.
+  std::map<std::string, Names, std::less<>> rigid;  // Markers of a bone: they keep their distances.
+
+  [[nodiscard]] Names LabelsOf(const std::string& marker) const;
 };
 
 // Errors  MalformedFile with the line: no marker set, a newer version, unknown keys, joints or

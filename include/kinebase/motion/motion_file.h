@@ -138,7 +138,8 @@ void SaveRecording(const Recording& recording, const std::filesystem::path& path
                                                Diagnostics& diagnostics);
 
 // What stands for each of them, in order; joints of the file by their bones' names.
-// Errors, diagnostics  As StandardJoints.
+// Errors       As StandardJoints.
+// diagnostics  As StandardJoints; markers that do not keep their distances (FindLooseMarkers).
 [[nodiscard]] std::vector<JointSource> FindStandardJoints(const Recording& recording,
                                                           Diagnostics& diagnostics);
 

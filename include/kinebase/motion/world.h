@@ -10,11 +10,15 @@
 
 namespace kinebase {
 
-// To choose units by.
+// Units to write in.
 inline constexpr std::array<std::string_view, 5> kLengthUnits = {"mm", "cm", "m", "inch", "ft"};
 
 // The unit of CMU's and HDM05's skeletons; conversions of them to other formats kept the numbers.
 inline constexpr std::string_view kAcclaimUnit = "inch / 0.45";
+
+// Units that files come in.
+inline constexpr std::array<std::string_view, 6> kSourceUnits = {"mm",   "cm", "m",
+                                                                 "inch", "ft", kAcclaimUnit};
 
 enum class UpAxis { kX, kY, kZ };
 
