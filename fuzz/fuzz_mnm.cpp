@@ -30,7 +30,7 @@ void TryLabels(const kinebase::MarkerNames& names) {
   kinebase::Diagnostics diagnostics;
   const auto preset = kinebase::PresetLabels(labels, names, diagnostics);
   if (preset.size() != labels.size()) std::abort();
-  if (kinebase::CustomLabels(preset, names).size() != labels.size()) std::abort();
+  if (kinebase::CustomLabels(preset, names, diagnostics).size() != labels.size()) std::abort();
 }
 
 void TryMnm(std::string_view text) {

@@ -20,6 +20,7 @@ struct ConvertOptions {
   std::string up;
   std::string units;
   std::filesystem::path write_names;
+  std::string storage;
 };
 
 Json ToJson(const Diagnostics& diagnostics) {
@@ -30,10 +31,18 @@ Json ToJson(const Diagnostics& diagnostics) {
   return list;
 }
 
+std::optional<C3dStorage> ParseStorage(const std::string& text) {
+  for (const C3dStorage storage : {C3dStorage::kFloat, C3dStorage::kInteger}) {
+    if (text == ToString(storage)) return storage;
+  }
+  return std::nullopt;
+}
+
 SaveOptions ToSaveOptions(const ConvertOptions& options) {
   SaveOptions save{.overwrite = options.common.overwrite(),
                    .units = options.units,
-                   .marker_names = options.write_names};
+                   .marker_names = options.write_names,
+                   .storage = ParseStorage(options.storage)};
   if (!options.up.empty()) save.up_axis = ParseUpAxis(options.up);
   return save;
 }
@@ -126,6 +135,11 @@ void AddConvertCommand(CLI::App& program, int& exit_code) {
                    "Unit of lengths in OUT (default: as the format expects, or as it was)")
       ->check(OneOf({kLengthUnits.begin(), kLengthUnits.end()}))
       ->type_name("mm|cm|m|inch|ft");
+  command
+      ->add_option("--storage", options->storage,
+                   "Samples of a C3D as float or whole numbers (default: as it was, or float)")
+      ->check(OneOf({"float", "int16"}))
+      ->type_name("float|int16");
   command
       ->add_option("--write-names", options->write_names,
                    "Names that markers get in OUT (MNM: name of the preset, name in the file)")

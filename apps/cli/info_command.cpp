@@ -164,7 +164,14 @@ std::string DescribeJoints(const FileInfo& info) {
     replaced += fmt::format("{}{} at {}", replaced.empty() ? "" : ", ", ToString(joint.joint),
                             joint.source);
   }
-  return replaced.empty() ? "all found" : "all found; only near: " + replaced;
+  const auto least = std::ranges::min_element(info.joints, {}, &JointSource::confidence);
+  std::string text = "all found";
+  if (least != info.joints.end()) {
+    text += least->confidence == 1 ? ", certain"
+                                   : fmt::format(", least sure {} ({:.2f})", ToString(least->joint),
+                                                 least->confidence);
+  }
+  return replaced.empty() ? text : text + "; only near: " + replaced;
 }
 
 // Titles and what follows them, one below the other.

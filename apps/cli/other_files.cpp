@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -217,14 +218,16 @@ OtherFile ReadGlb(const fs::path& file, const LoadOptions& /*options*/) {
                      {"animations", animations},
                      {"last_time_s", last_s},
                      {"rate_hz", NoteOf(scene, "rate_hz")},
-                     {"first_frame", NoteOf(scene, "first_frame")}};
-    const auto note = [&](const char* title, const Json& value) {
-      if (value.is_number()) {
-        info.lines.emplace_back(title, fmt::format("{:g}", value.get<double>()));
-      }
-    };
-    note("rate", info.contents["rate_hz"]);
-    note("first", info.contents["first_frame"]);
+                     {"first_frame", nullptr}};
+    const Json rate = NoteOf(scene, "rate_hz");
+    if (rate.is_number())
+      info.lines.emplace_back("rate", fmt::format("{:g} Hz", rate.get<double>()));
+    const Json first = NoteOf(scene, "first_frame");
+    if (first.is_number() && std::abs(first.get<double>()) < 1e15) {
+      const std::int64_t number = std::llround(first.get<double>());
+      info.contents["first_frame"] = number;
+      info.lines.emplace_back("frames", fmt::format("numbered from {}", number));
+    }
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::kMalformedFile,
                 fmt::format("holds a scene that breaks glTF's rules: {}", error.what()), {file});

@@ -57,7 +57,11 @@ class Cutter {
     });
     for (const std::size_t i : clips) {
       errors_[i] = error;
-      if (!error) errors_[i] = ErrorOf(plan_.clips[i].file, [&] { WriteClip(*take, i); });
+      if (error) continue;
+      errors_[i] = ErrorOf(plan_.clips[i].file, [&] { WriteClip(*take, i); });
+      if (errors_[i]) continue;
+      const Diagnostics notes = take->NotesOn(plan_.clips[i]);
+      notes_[source].insert(notes_[source].end(), notes.begin(), notes.end());
     }
   }
 

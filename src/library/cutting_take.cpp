@@ -1,6 +1,8 @@
 #include "library/cutting_take.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "fmt/format.h"
 #include "kinebase/motion/motion_file.h"
@@ -83,6 +85,21 @@ std::string OpenTake::Clip(const ClipPlan& plan) const {
   }
   if (const auto* amc = std::get_if<AmcMotion>(&record_)) return AmcClip(*amc, plan);
   return C3dClip(std::get<C3dRecording>(record_), plan);
+}
+
+Diagnostics OpenTake::NotesOn(const ClipPlan& plan) const {
+  const auto* amc = std::get_if<AmcMotion>(&record_);
+  if (amc == nullptr) return {};
+  const auto row =
+      std::span(amc->values)
+          .subspan(static_cast<std::size_t>(plan.cut.first_frame - 1) * amc->column_count,
+                   amc->column_count);
+  const auto missing = std::ranges::count_if(row, [](double v) { return !std::isfinite(v); });
+  if (missing == 0) return {};
+  return {{Severity::kWarning,
+           fmt::format("{} begins in a gap: {} values of its first frame are those of the nearest "
+                       "frame that has them",
+                       plan.file.filename().string(), missing)}};
 }
 
 }  // namespace kinebase::internal

@@ -23,6 +23,9 @@ class OpenTake {
   // Errors  InvalidArgument with the line of the cut file if the range leaves the take.
   [[nodiscard]] std::string Clip(const ClipPlan& plan) const;
 
+  // What is in a clip's file and was not in the take.
+  [[nodiscard]] Diagnostics NotesOn(const ClipPlan& plan) const;
+
  private:
   [[nodiscard]] std::int64_t frame_count() const;
 

@@ -63,10 +63,9 @@ std::string FormatRecord(const BvhMotion& bvh, double rate_hz, Diagnostics& diag
 }
 
 // The file tells neither unit nor axis: what readers will take it for, if that is not what it is.
-void ReportWrongGuess(const BvhMotion& bvh, const BvhWriteOptions& world, double rate_hz,
+void ReportWrongGuess(const BvhMotion& bvh, const BvhWriteOptions& world,
                       Diagnostics& diagnostics) {
-  Diagnostics ignored;
-  const BvhFigure guess = BuildFigure(bvh, {.rate_hz = rate_hz}, ignored);
+  const BvhWorld guess = GuessWorld(bvh, world.up_axis);
   Untold untold;
   if (guess.up_axis != world.up_axis) untold.up = world.up_axis;
   if (CentimetresIn(guess.units) != CentimetresIn(world.units)) untold.units = world.units;
@@ -122,7 +121,7 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
   }
   if (record != nullptr && !WantsOtherWorld(recording, options)) {
     const std::string text = FormatRecord(*record, recording.rate_hz(), diagnostics);
-    ReportWrongGuess(*record, write, recording.rate_hz(), diagnostics);
+    ReportWrongGuess(*record, write, diagnostics);
     WriteFile(path, text, options.overwrite);
     return;
   }
@@ -131,7 +130,7 @@ void SaveBvh(const Recording& recording, const std::filesystem::path& path,
     ReportRecordLoss(recording, "BVH in another world", diagnostics);
     SetFrameTime(*record, recording.rate_hz(), bvh);
   }
-  ReportWrongGuess(bvh, write, recording.rate_hz(), diagnostics);
+  ReportWrongGuess(bvh, write, diagnostics);
   WriteFile(path, FormatBvh(bvh), options.overwrite);
 }
 

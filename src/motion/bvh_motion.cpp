@@ -84,29 +84,44 @@ void BringToOurWorld(RawFigure& figure, UpAxis up, double cm_per_unit, SkeletonS
                                                      Eigen::Vector3d::Zero(), figure.rig.name_map);
 }
 
-}  // namespace
+SkeletonSource SourceOf(const BvhMotion& bvh, const RawFigure& raw) {
+  return {.file_name = bvh.file_name, .file_type = "BVH", .name = raw.joints.front().name};
+}
 
-BvhFigure BuildFigure(const BvhMotion& bvh, const BvhBuildOptions& options,
-                      Diagnostics& diagnostics) {
+// Bones and frames as they are in the file.
+RawFigure BuildRaw(const BvhMotion& bvh, Diagnostics& diagnostics) {
   RawFigure raw;
-  raw.motion.rate_hz = ChooseRate(bvh, options);
   ReportOtherRoots(bvh, diagnostics);
   internal::BuildBones(bvh, raw);
   CheckSize(bvh, raw.bones.size());
   raw.rig = MapRig(raw.joints);
   internal::BuildFrames(bvh, raw, diagnostics);
-  const SkeletonSource source{
-      .file_name = bvh.file_name, .file_type = "BVH", .name = raw.joints.front().name};
-  raw.motion.skeleton = std::make_shared<const Skeleton>(
-      raw.joints, source, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), raw.rig.name_map);
+  raw.motion.skeleton =
+      std::make_shared<const Skeleton>(raw.joints, SourceOf(bvh, raw), Eigen::Vector3d::Zero(),
+                                       Eigen::Vector3d::Zero(), raw.rig.name_map);
+  return raw;
+}
 
+}  // namespace
+
+BvhWorld GuessWorld(const BvhMotion& bvh, std::optional<UpAxis> up_axis) {
+  Diagnostics ignored;
+  const RawFigure raw = BuildRaw(bvh, ignored);
+  const UpAxis guess = internal::GuessUpAxis(raw, ignored);
+  return {.units = internal::GuessUnits(raw, up_axis.value_or(guess), ignored), .up_axis = guess};
+}
+
+BvhFigure BuildFigure(const BvhMotion& bvh, const BvhBuildOptions& options,
+                      Diagnostics& diagnostics) {
+  RawFigure raw = BuildRaw(bvh, diagnostics);
+  raw.motion.rate_hz = ChooseRate(bvh, options);
   internal::ReportMissingBones(raw, diagnostics);
 
   BvhFigure figure{.rig = raw.rig.rig, .joint_sources = raw.rig.sources};
   figure.up_axis = options.up_axis ? *options.up_axis : internal::GuessUpAxis(raw, diagnostics);
   figure.units = options.units.empty() ? internal::GuessUnits(raw, figure.up_axis, diagnostics)
                                        : options.units;
-  BringToOurWorld(raw, figure.up_axis, CentimetresInOrFail(figure.units), source);
+  BringToOurWorld(raw, figure.up_axis, CentimetresInOrFail(figure.units), SourceOf(bvh, raw));
   figure.motion = std::move(raw.motion);
   return figure;
 }

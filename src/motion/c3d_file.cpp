@@ -105,6 +105,7 @@ void SaveC3d(const Recording& recording, const std::filesystem::path& path,
              const SaveOptions& options, Diagnostics& diagnostics) {
   C3dRecording c3d = RecordToWrite(recording, options, diagnostics);
   ReportRecordLoss(recording, "C3D", diagnostics);
+  if (options.storage) ChangeStorage(c3d, *options.storage);
   if (!options.marker_names.empty()) {
     const MarkerNames names = ReadMarkerNames(options.marker_names, false, diagnostics);
     std::vector<std::string> labels;

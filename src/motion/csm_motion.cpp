@@ -78,15 +78,14 @@ void Append(std::string& list, const std::string& item) {
 }
 
 // What is odd about markers that were named by a table, `fitting` of which have a row there.
+// hint  Where in a line the names before stand.
 void ReportNaming(const MarkerNames& names, std::span<const std::string> before,
-                  std::size_t fitting, const std::vector<std::string>& after,
+                  std::size_t fitting, const std::vector<std::string>& after, std::string_view hint,
                   Diagnostics& diagnostics) {
   if (fitting == 0 && !names.rows.empty() && !before.empty()) {
     diagnostics.push_back(
-        {Severity::kWarning,
-         fmt::format("the marker names fit none of the file's markers; a line is what a marker is "
-                     "and then what the file calls it, as {}",
-                     Quoted(BareLabel(before.front())))});
+        {Severity::kWarning, fmt::format("the marker names fit none of the markers, such as {}; {}",
+                                         Quoted(BareLabel(before.front())), hint)});
   }
   std::set<std::string> seen;
   std::string repeated;
@@ -175,7 +174,8 @@ std::vector<std::string> PresetLabels(std::span<const std::string> labels, const
                                       "the band keeps its names, as it stands elsewhere",
                                       bands)});
   }
-  ReportNaming(names, labels, fitting, result, diagnostics);
+  ReportNaming(names, labels, fitting, result,
+               "a line is what a marker is, and then what the file calls it", diagnostics);
   return result;
 }
 
@@ -189,7 +189,9 @@ std::vector<std::string> CustomLabels(std::span<const std::string> labels, const
     if (custom) ++fitting;
     result.emplace_back(custom.value_or(label));
   }
-  ReportNaming(names, labels, fitting, result, diagnostics);
+  ReportNaming(names, labels, fitting, result,
+               "a line is what a marker is here, and then what the file is to call it",
+               diagnostics);
   return result;
 }
 

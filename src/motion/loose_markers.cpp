@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace kinebase {
@@ -64,6 +65,12 @@ std::optional<int> FindMarker(const MarkerCloud& markers, const MarkerSet::Names
   return std::nullopt;
 }
 
+// "Ada:" of "Ada:LFHD"; empty if there is none.
+std::string_view SubjectOf(const MarkerCloud& markers, int marker) {
+  const std::string_view label = markers.labels[static_cast<std::size_t>(marker)];
+  return label.substr(0, label.size() - BareLabel(label).size());
+}
+
 std::vector<Pair> PairsOfOneBone(const MarkerCloud& markers, std::span<const MarkerSet> sets) {
   std::set<std::pair<int, int>> seen;
   std::vector<Pair> pairs;
@@ -76,7 +83,8 @@ std::vector<Pair> PairsOfOneBone(const MarkerCloud& markers, std::span<const Mar
       for (std::size_t i = 0; i < on_bone.size(); ++i) {
         for (std::size_t j = i + 1; j < on_bone.size(); ++j) {
           const auto [a, b] = std::minmax(on_bone[i], on_bone[j]);
-          if (a != b && seen.emplace(a, b).second) pairs.push_back(Measure(markers, a, b));
+          if (a == b || SubjectOf(markers, a) != SubjectOf(markers, b)) continue;
+          if (seen.emplace(a, b).second) pairs.push_back(Measure(markers, a, b));
         }
       }
     }
@@ -123,16 +131,19 @@ class Notes {
   std::map<int, std::set<int>> others_;
 };
 
-// The marker that at least two, and at least half, of its distances speak against; null if none.
-std::optional<int> MostSuspected(const std::map<int, int>& known,
-                                 const std::map<int, std::vector<const Pair*>>& off) {
-  std::optional<int> most;
-  std::size_t most_off = 1;
+using PairsByMarker = std::map<int, std::vector<const Pair*>>;
+
+// The markers that most distances speak against: at least two, and at least half of their own.
+// Several where it cannot be told which of them it is, as after a swap.
+std::vector<int> MostSuspected(const std::map<int, int>& known, const PairsByMarker& off) {
+  std::vector<int> most;
+  std::size_t most_off = 2;
   for (const auto& [marker, pairs] : off) {
-    if (pairs.size() <= most_off || 2 * pairs.size() < static_cast<std::size_t>(known.at(marker))) {
+    if (pairs.size() < most_off || 2 * pairs.size() < static_cast<std::size_t>(known.at(marker))) {
       continue;
     }
-    most = marker;
+    if (pairs.size() > most_off) most.clear();
+    most.push_back(marker);
     most_off = pairs.size();
   }
   return most;
@@ -146,7 +157,7 @@ std::vector<LooseMarker> FindLooseMarkers(const MarkerCloud& markers,
   Notes notes(markers);
   for (int frame = 0; frame < markers.frame_count; ++frame) {
     std::map<int, int> known;
-    std::map<int, std::vector<const Pair*>> off;
+    PairsByMarker off;
     for (const Pair& pair : pairs) {
       const double off_cm = pair.off_cm[static_cast<std::size_t>(frame)];
       if (std::isnan(off_cm)) continue;
@@ -156,11 +167,15 @@ std::vector<LooseMarker> FindLooseMarkers(const MarkerCloud& markers,
       off[pair.a].push_back(&pair);
       off[pair.b].push_back(&pair);
     }
-    while (const auto marker = MostSuspected(known, off)) {
-      notes.Add(*marker, frame, off[*marker]);
-      off.erase(*marker);
+    for (auto most = MostSuspected(known, off); !most.empty(); most = MostSuspected(known, off)) {
+      for (const int marker : most) {
+        notes.Add(marker, frame, off[marker]);
+        off.erase(marker);
+      }
       for (auto& [other, its_pairs] : off) {
-        std::erase_if(its_pairs, [&](const Pair* p) { return p->a == *marker || p->b == *marker; });
+        std::erase_if(its_pairs, [&](const Pair* pair) {
+          return !off.contains(pair->a) || !off.contains(pair->b);
+        });
       }
     }
   }

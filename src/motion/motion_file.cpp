@@ -127,7 +127,7 @@ void ReportLooseMarkers(const Recording& recording, Diagnostics& diagnostics) {
     diagnostics.push_back(
         {Severity::kWarning,
          fmt::format("marker {} does not keep its distance from {}: up to {:.0f} cm off, in {} of "
-                     "frames {} to {}; joints near it are wrong there",
+                     "frames {} to {}; joints placed by it are wrong there",
                      loose.label, fmt::join(loose.others, ", "), loose.farthest_cm, loose.frames,
                      recording.first_frame() + loose.first, recording.first_frame() + loose.last)});
   }

@@ -22,36 +22,35 @@ bool Carries(Carried carried, Extra extra) {
   return std::ranges::find(carried, extra) != carried.end();
 }
 
-// Groups that say how the rest is stored, or whose contents are named one by one.
-bool IsOfTheFormat(std::string_view group) {
-  constexpr std::array<std::string_view, 6> kGroups = {"POINT", "ANALOG",        "FORCE_PLATFORM",
-                                                       "EVENT", "EVENT_CONTEXT", "TRIAL"};
-  return std::ranges::any_of(
-      kGroups, [&](std::string_view each) { return EqualsIgnoringCase(each, group); });
+// Parameters that say how a group's things are stored or numbered, and are not lost with them.
+struct GroupOfTheFormat {
+  std::string_view name;
+  std::vector<std::string_view> parameters;  // Empty: all.
+};
+
+const GroupOfTheFormat* FindGroupOfTheFormat(std::string_view name) {
+  static const std::array<GroupOfTheFormat, 6> kGroups = {{
+      {"POINT",
+       {"USED", "SCALE", "RATE", "DATA_START", "FRAMES", "LONG_FRAMES", "UNITS", "LABELS",
+        "X_SCREEN", "Y_SCREEN"}},
+      {"TRIAL", {"ACTUAL_START_FIELD", "ACTUAL_END_FIELD"}},
+      {"ANALOG", {}},
+      {"FORCE_PLATFORM", {}},
+      {"EVENT", {}},
+      {"EVENT_CONTEXT", {}},
+  }};
+  const auto* const found = std::ranges::find_if(
+      kGroups, [&](const GroupOfTheFormat& each) { return EqualsIgnoringCase(each.name, name); });
+  return found == kGroups.end() ? nullptr : found;
 }
 
-// Says how points are stored or numbered, and is not lost with them.
-bool IsOfPoints(const C3dGroup& group, const C3dParameter& parameter) {
-  constexpr std::array<std::string_view, 12> kOfPoints = {"USED",
-                                                          "SCALE",
-                                                          "RATE",
-                                                          "DATA_START",
-                                                          "FRAMES",
-                                                          "LONG_FRAMES",
-                                                          "UNITS",
-                                                          "LABELS",
-                                                          "X_SCREEN",
-                                                          "Y_SCREEN",
-                                                          "ACTUAL_START_FIELD",
-                                                          "ACTUAL_END_FIELD"};
-  if (!EqualsIgnoringCase(group.name, "POINT") && !EqualsIgnoringCase(group.name, "TRIAL")) {
-    return true;
-  }
+bool IsOfTheFormat(const GroupOfTheFormat& group, const C3dParameter& parameter) {
+  if (group.parameters.empty()) return true;
   // LABELS2 and so on hold those beyond the 255th.
-  const std::string name =
-      ToLower(parameter.name).substr(0, parameter.name.find_last_not_of("0123456789") + 1);
-  return std::ranges::any_of(kOfPoints,
-                             [&](std::string_view each) { return EqualsIgnoringCase(each, name); });
+  const std::string_view name = parameter.name;
+  const std::string_view stem = name.substr(0, name.find_last_not_of("0123456789") + 1);
+  return std::ranges::any_of(group.parameters,
+                             [&](std::string_view each) { return EqualsIgnoringCase(each, stem); });
 }
 
 // A text that is there and blank, as descriptions mostly are.
@@ -59,6 +58,21 @@ bool IsBlank(const C3dParameter& parameter) {
   if (parameter.size() == 0) return true;
   const std::vector<std::string> texts = parameter.Strings();
   return !texts.empty() && std::ranges::all_of(texts, &std::string::empty);
+}
+
+// "POINT (DESCRIPTIONS, MOVIE_ID and 3 more)", if there are any.
+void AppendOthers(const C3dGroup& group, const GroupOfTheFormat& known, Contents& groups) {
+  constexpr std::size_t kMostNamed = 2;
+  Contents names;
+  for (const C3dParameter& parameter : group.parameters) {
+    if (!IsOfTheFormat(known, parameter) && !IsBlank(parameter)) names.push_back(parameter.name);
+  }
+  if (names.empty()) return;
+  const std::size_t named = std::min(names.size(), kMostNamed);
+  const std::size_t more = names.size() - named;
+  names.resize(named);
+  groups.push_back(fmt::format("{} ({}{})", group.name, fmt::join(names, ", "),
+                               more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
 Contents ContentsOf(const C3dRecording& c3d, Carried carried) {
@@ -78,18 +92,15 @@ Contents ContentsOf(const C3dRecording& c3d, Carried carried) {
     contents.push_back(fmt::format("{} points that are angles, forces and the like", other_points));
   }
   Contents groups;
-  Contents in_part;
   for (const C3dGroup& group : c3d.groups) {
-    if (!IsOfTheFormat(group.name)) {
-      if (!group.parameters.empty()) groups.push_back(group.name);
-      continue;
+    if (FindGroupOfTheFormat(group.name) == nullptr && !group.parameters.empty()) {
+      groups.push_back(group.name);
     }
-    const auto is_lost = [&](const C3dParameter& parameter) {
-      return !IsOfPoints(group, parameter) && !IsBlank(parameter);
-    };
-    if (std::ranges::any_of(group.parameters, is_lost)) in_part.push_back("some of " + group.name);
   }
-  groups.insert(groups.end(), in_part.begin(), in_part.end());
+  for (const C3dGroup& group : c3d.groups) {
+    const GroupOfTheFormat* known = FindGroupOfTheFormat(group.name);
+    if (known != nullptr) AppendOthers(group, *known, groups);
+  }
   if (!groups.empty()) {
     contents.push_back(fmt::format("parameters of {}", fmt::join(groups, ", ")));
   }
@@ -196,10 +207,21 @@ void ReportRecordLoss(const Recording& recording, std::string_view format, Diagn
       {Severity::kInfo, fmt::format("{} has no place for: {}", format, fmt::join(contents, ", "))});
 }
 
+namespace {
+
+// "inch / 0.45" is several words.
+std::string QuotedForShell(std::string_view word) {
+  return word.find(' ') == word.npos ? std::string(word) : fmt::format("\"{}\"", word);
+}
+
+}  // namespace
+
 void ReportUntold(const Untold& untold, std::string_view format, Diagnostics& diagnostics) {
   std::string options;
   if (untold.up) options += " --source-up " + ToLower(ToString(*untold.up));
-  if (!untold.units.empty()) options += fmt::format(" --source-units {}", untold.units);
+  if (!untold.units.empty()) {
+    options += fmt::format(" --source-units {}", QuotedForShell(untold.units));
+  }
   if (options.empty()) return;
   diagnostics.push_back(
       {Severity::kWarning,

@@ -198,7 +198,7 @@ TEST_F(Converting, NamesMarkersByAnMnmFile) {
 
   WriteText(names, "root Nobody\n");
   EXPECT_THAT(Convert({points, Out("c.trc"), "--names", names}).err,
-              HasSubstr("warning: the marker names fit none of the file's markers"));
+              HasSubstr("warning: the marker names fit none of the markers"));
 }
 
 TEST_F(Converting, WritesMarkersUnderTheNamesOfAnMnmFile) {

@@ -5,6 +5,7 @@
 #include "cli/expectations.h"
 #include "cli/run_program.h"
 #include "cli/synthetic_library.h"
+#include "fmt/format.h"
 #include "support/files.h"
 #include "support/test_data.h"
 
@@ -171,10 +172,10 @@ TEST(Info, ReadsWhatIsNoMotionByItself) {
              "first_time_s:number", "last_time_s:number", "rate_hz:number"}},
            {out + ".glb",
             "GLB",
-            {"  nodes     ", "root, ", "  animation 0.100 s\n", "  rate      120\n",
-             "  first     1\n"},
+            {"  nodes     ", "root, ", "  animation 0.100 s\n", "  rate      120 Hz\n",
+             "  frames    numbered from 1\n"},
             {"generator:string", "nodes:array", "animations:integer", "last_time_s:number",
-             "rate_hz:number", "first_frame:number"}},
+             "rate_hz:number", "first_frame:integer"}},
            {out + ".csv",
             "CSV",
             {"  rows      13\n", ": frame, time_s, root_x", "120 rows a second\n"},
@@ -195,7 +196,7 @@ TEST(Info, ReadsWhatIsNoMotionByItself) {
     for (const auto& [name, value] : recording.items()) EXPECT_TRUE(info.contains(name)) << name;
     // Beside others it has a row of the table.
     EXPECT_THAT(RunKinebase({"info", file, library.Squat()}).out,
-                ContainsRegex(file + " +" + format + "[ \n]"));
+                ContainsRegex(fmt::format("{} +{}[ \n]", file, format)));
   }
 }
 

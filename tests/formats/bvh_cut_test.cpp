@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 constexpr std::string_view kSlide =
     "HIERARCHY\nROOT Slide\n{\nOFFSET 0 0 0\nCHANNELS 2 Xposition Yposition\n}\nMOTION\n"
-    "Frames: 4\nFrame Time: 0.1\n1 nan\n2 5\nnan 6\nnan nan\n";
+    "Frames: 4\nFrame Time: 0.1\n1 nan\n2 5\ninf 6\nnan -inf\n";
 
 TEST(CutBvh, KeepsValuesAndSaysHowManyFramesThereAre) {
   const BvhMotion clip = CutBvh(ParseBvh(test::kArmBvh, "arm.bvh"), 1, 1);
@@ -26,7 +26,7 @@ TEST(CutBvh, KeepsValuesAndSaysHowManyFramesThereAre) {
 TEST(CutBvh, FillsTheFirstFrameAsReadersOfTheWholeDo) {
   const BvhMotion take = ParseBvh(kSlide, "slide.bvh");
   EXPECT_THAT(CutBvh(take, 0, 0).values, ElementsAre(1, 5));
-  EXPECT_THAT(CutBvh(take, 2, 3).values, ElementsAre(2, 6, testing::IsNan(), testing::IsNan()));
+  EXPECT_THAT(CutBvh(take, 2, 3).values, ElementsAre(2, 6, testing::IsNan(), testing::Lt(-1e300)));
 }
 
 TEST(CutBvh, RefusesARangeThatIsEmptyOrLeavesTheMotion) {

@@ -40,6 +40,16 @@ struct BvhFigure {
 [[nodiscard]] BvhFigure BuildFigure(const BvhMotion& bvh, const BvhBuildOptions& options,
                                     Diagnostics& diagnostics);
 
+// What readers take a file's lengths and axis for, which it does not tell.
+struct BvhWorld {
+  std::string units;
+  UpAxis up_axis = UpAxis::kY;
+};
+
+// up_axis  The axis if it is known; units are guessed along it.
+// Errors   As BuildFigure.
+[[nodiscard]] BvhWorld GuessWorld(const BvhMotion& bvh, std::optional<UpAxis> up_axis = {});
+
 struct BvhWriteOptions {
   std::string units = "cm";
   UpAxis up_axis = UpAxis::kY;

@@ -1,4 +1,4 @@
-// Markers that are not where they were put: slipped, swapped with others, or reconstructed wrongly.
+// Markers that are not where they were put: slipped, swapped or reconstructed wrongly.
 //
 // Markers on one bone keep their distances. docs/design/marker-joints.md has the method.
 #pragma once
@@ -23,7 +23,9 @@ struct LooseMarker {
 
 // Looks at the markers that a set calls rigid. A distance is compared with the one that more than
 // half of the frames nearly have; where several are off, the marker is loose that most have in
-// common. What is loose for less than a quarter of a second in all is left out, as noise.
+// common. Where that is more than one, as after a swap, all of them are named: distances cannot
+// tell which. Markers of different subjects are not compared. What is loose for less than a quarter
+// of a second in all is left out, as noise.
 //
 // Cost  O(frames · log frames) for each pair of markers of a bone.
 [[nodiscard]] std::vector<LooseMarker> FindLooseMarkers(const MarkerCloud& markers,

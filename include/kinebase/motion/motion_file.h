@@ -100,6 +100,8 @@ struct SaveOptions {
   std::optional<UpAxis> up_axis;       // Default: as the record, else what the format expects.
   std::string units;                   // The same; as CentimetresIn.
   std::filesystem::path marker_names;  // An MNM file: names to write markers under.
+  std::optional<C3dStorage>
+      storage;  // Of the samples of a C3D. Default: as the record, else float.
 };
 
 // One format: how it is recognised, read and written.
