@@ -46,16 +46,16 @@ struct Shown {
 };
 
 std::vector<FeatureTally> TallyFeatures(const std::vector<ExplainedCell>& cells,
-                                        int feature_count) {
+                                        const QuantizedTemplate& motion_template) {
   std::vector<FeatureTally> tallies;
-  for (int feature = 0; feature < feature_count; ++feature) {
+  for (int feature = 0; feature < motion_template.feature_count; ++feature) {
     FeatureTally tally{.feature = feature};
     const std::uint64_t bit = std::uint64_t{1} << feature;
     for (const ExplainedCell& cell : cells) {
       if ((cell.agreed & bit) != 0) ++tally.agreed;
       if ((cell.disagreed & bit) == 0) continue;
       ++tally.disagreed;
-      tally.cost += cell.cost_of_one;
+      tally.cost += CostOfFeature(motion_template, cell, feature);
     }
     if (tally.agreed + tally.disagreed > 0) tallies.push_back(tally);
   }
@@ -76,14 +76,13 @@ Shown Explain(const ExplainOptions& options) {
                                                options.feature_set)};
   if (options.mirror) motion_template = MirrorTemplate(motion_template, shown.features);
   shown.template_name = motion_template.name;
-  shown.quantized =
-      Quantize(motion_template.matrix, motion_template.quantisation, motion_template.matching);
+  shown.quantized = Quantize(motion_template);
   TakeFeatures take = LoadTakeFeatures({.file = options.motion}, shown.features,
                                        motion_template.matrix.rate_hz, options.common.load);
   PrintDiagnostics(options.common, options.motion, take.diagnostics);
   shown.explanation = ExplainHit(shown.quantized, take, last_frame);
   shown.recording = std::move(take.features.columns);
-  shown.tallies = TallyFeatures(shown.explanation.cells, shown.features.feature_count());
+  shown.tallies = TallyFeatures(shown.explanation.cells, shown.quantized);
   return shown;
 }
 
@@ -100,7 +99,7 @@ Json ToJson(const Shown& shown) {
   for (const ExplainedCell& cell : shown.explanation.cells) {
     path.push_back({{"template_column", cell.cell.template_column},
                     {"column", cell.cell.recording_column},
-                    {"cost", std::popcount(cell.disagreed) * cell.cost_of_one},
+                    {"cost", cell.cost},
                     {"agreed", NamesOf(cell.agreed, shown.features)},
                     {"disagreed", NamesOf(cell.disagreed, shown.features)}});
   }

@@ -1,5 +1,7 @@
 // kinebase learn: a few examples become a motion template.
 
+#include <array>
+#include <map>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -7,6 +9,7 @@
 #include "cli/console.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
+#include "kinebase/library/class_learning.h"
 #include "kinebase/library/takes.h"
 #include "kinebase/templates/learning.h"
 #include "kinebase/templates/template_file.h"
@@ -27,12 +30,38 @@ struct LearnCommandOptions {
   std::vector<std::string> actors;
   std::vector<std::filesystem::path> folders;
   int max_rounds = 10;
+  std::string method = "mt";
+  bool all_classes = false;
+  std::vector<std::filesystem::path> background;
+
+  [[nodiscard]] Profile Learning() const {
+    return ParseProfile(learning).value_or(features.ParsedProfile());
+  }
+  [[nodiscard]] Profile Matching() const {
+    return ParseProfile(matching).value_or(features.ParsedProfile());
+  }
 };
 
 // Learning needs to know from what, and where to put the result.
 void CheckUsage(const LearnCommandOptions& options) {
   if (options.clips.empty() && options.list.empty()) {
     throw UsageError("learn needs clips, or a list of clips: --list clips.csv --class NAME");
+  }
+  if (!options.list.empty() && options.class_name.empty() != options.all_classes) {
+    throw UsageError("--list needs either --class NAME or --all-classes");
+  }
+  if (options.all_classes) {
+    if (options.output.empty()) throw UsageError("--all-classes needs a folder: -o FOLDER");
+    if (options.method == "mt") throw UsageError("--all-classes is for --method mt+");
+    return;
+  }
+  if (options.method == "mt" && !options.background.empty()) {
+    throw UsageError("--background is for --method mt+");
+  }
+  if (options.method == "mt+" && options.list.empty() && options.background.empty()) {
+    throw UsageError(
+        "--method mt+ needs other motion to set the class off from: --background PATH, or the "
+        "other classes of a --list");
   }
   if (!options.clips.empty() && !options.list.empty()) {
     throw UsageError("learn takes clips or --list, not both");
@@ -89,9 +118,8 @@ MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet
                         .feature_set_hash = features.hash,
                         .matrix = learned.matrix,
                         .rounds = static_cast<int>(learned.largest_costs.size())};
-  const Profile profile = options.features.ParsedProfile();
-  result.learning = ParseProfile(options.learning).value_or(profile);
-  result.matching = ParseProfile(options.matching).value_or(profile);
+  result.learning = options.Learning();
+  result.matching = options.Matching();
   for (const TakeFeatures& take : batch.takes) {
     result.clips.push_back({.file = take.path.filename().string(),
                             .first_frame = take.stretch.first_frame,
@@ -100,9 +128,156 @@ MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet
   return result;
 }
 
+// The clips of all classes of the list, each the background of the others; or those that were
+// named.
+std::vector<ListedClip> ListedClips(const LearnCommandOptions& options) {
+  std::vector<ListedClip> clips;
+  if (!options.class_name.empty())
+    (void)ChosenClips(options);  // Says if it, or an actor, is not there.
+  for (ListedClip& clip : ReadClipList(options.list, options.folders)) {
+    const bool is_asked_for = options.actors.empty() ||
+                              std::ranges::find(options.actors, clip.actor) != options.actors.end();
+    if (!is_asked_for) continue;
+    if (clip.file.empty()) {
+      throw Error(ErrorCode::kNotFound,
+                  fmt::format("'{}' is not below the list's folder; name its folder with --in",
+                              clip.name.string()),
+                  {options.list, clip.line});
+    }
+    clips.push_back(std::move(clip));
+  }
+  return clips;
+}
+
+// Clips with what they show, and other motion.
+struct LabelledBatch {
+  std::vector<LabelledClip> clips;
+  std::vector<TakeFeatures> background;
+  std::vector<TakeFailure> failures;
+};
+
+LabelledBatch LoadLabelled(const LearnCommandOptions& options, const FeatureSet& features) {
+  const ProgressCallback progress = MakeProgress(options.common);
+  const auto load = [&](const std::vector<TakeStretch>& stretches) {
+    return LoadManyTakeFeatures(stretches, features, options.features.rate_hz, options.common.load,
+                                options.common.threads, progress, true);
+  };
+  std::map<std::filesystem::path, ListedClip> by_file;
+  std::vector<TakeStretch> stretches;
+  if (options.list.empty()) {
+    stretches = ChosenClips(options);
+  } else {
+    for (ListedClip& clip : ListedClips(options)) {
+      stretches.push_back({.file = clip.file});
+      by_file[clip.file] = std::move(clip);
+    }
+  }
+  LabelledBatch batch;
+  TakeBatch clips = load(stretches);
+  for (TakeFeatures& take : clips.takes) {
+    const auto listed = by_file.find(take.path);
+    const bool is_listed = listed != by_file.end();
+    std::string class_name = is_listed ? listed->second.class_name : TemplateName(options);
+    std::string actor = is_listed ? listed->second.actor : take.name.actor;
+    batch.clips.push_back({std::move(take), std::move(class_name), std::move(actor)});
+  }
+  batch.failures = std::move(clips.failures);
+  if (options.background.empty()) return batch;
+  stretches.clear();
+  for (auto& file : FindMotionFiles(options.background))
+    stretches.push_back({.file = std::move(file)});
+  TakeBatch background = load(stretches);
+  batch.background = std::move(background.takes);
+  batch.failures.insert(batch.failures.end(), background.failures.begin(),
+                        background.failures.end());
+  return batch;
+}
+
+std::vector<MotionTemplate> LearnTogether(const LearnCommandOptions& options,
+                                          const FeatureSet& features, const LabelledBatch& batch) {
+  std::vector<const LabelledClip*> clips;
+  for (const LabelledClip& clip : batch.clips) clips.push_back(&clip);
+  std::vector<RecordingStreams> library;
+  for (const TakeFeatures& take : batch.background)
+    library.push_back({&take.features, &take.poses});
+  const ClassLearningOptions learning{.learning = options.Learning(),
+                                      .matching = options.Matching(),
+                                      .max_rounds = options.max_rounds,
+                                      .library = library,
+                                      .threads = options.common.threads,
+                                      .progress = MakeProgress(options.common)};
+  std::vector<MotionTemplate> templates = LearnClasses(clips, features, learning);
+  const std::array methods = {*FindMethod("mt+")};
+  Calibrate(GatherEvidence(clips, templates, features, methods, learning).front(), templates);
+  return templates;
+}
+
+Json SummaryOf(const MotionTemplate& learned, const std::filesystem::path& file, double elapsed_s) {
+  return {{"name", learned.name},
+          {"clips", learned.clips.size()},
+          {"columns", learned.matrix.column_count()},
+          {"rounds", learned.rounds},
+          {"elapsed_s", elapsed_s},
+          {"file", file.string()}};
+}
+
+std::string DescribeLearned(const MotionTemplate& learned, const std::filesystem::path& file) {
+  return fmt::format(
+      "{}: learned from {} in {}, {} long ({:.2f} s), written to {}\n", OnOneLine(learned.name),
+      FormatCount(std::ssize(learned.clips), "clip", "clips"),
+      FormatCount(learned.rounds, "round", "rounds"),
+      FormatCount(learned.matrix.column_count(), "column", "columns"),
+      learned.matrix.total_weight() / learned.matrix.rate_hz, OnOneLine(file.string()));
+}
+
+// Where each template goes that is asked for.
+std::vector<std::pair<MotionTemplate, std::filesystem::path>> Outputs(
+    const LearnCommandOptions& options, std::vector<MotionTemplate> templates) {
+  std::vector<std::pair<MotionTemplate, std::filesystem::path>> outputs;
+  for (MotionTemplate& each : templates) {
+    if (options.all_classes) {
+      auto file = options.output / DefaultOutput(each.name);
+      outputs.emplace_back(std::move(each), std::move(file));
+    } else if (options.list.empty() || each.name == options.class_name) {
+      each.name = TemplateName(options);
+      outputs.emplace_back(std::move(each), options.output);
+    }
+  }
+  return outputs;
+}
+
+int RunWithContrast(LearnCommandOptions& options) {
+  const Stopwatch watch;
+  if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
+  if (!options.all_classes) CheckWritable(options.output, options.common.overwrite());
+  const FeatureSet features = options.features.Load();
+  const LabelledBatch batch = LoadLabelled(options, features);
+  for (const auto& failure : batch.failures) PrintError(failure.error.what());
+  for (const LabelledClip& clip : batch.clips) {
+    PrintDiagnostics(options.common, clip.take.path, clip.take.diagnostics);
+  }
+  if (batch.clips.empty()) return kCouldNot;
+  const auto outputs = Outputs(options, LearnTogether(options, features, batch));
+  for (const auto& [learned, file] : outputs) CheckWritable(file, options.common.overwrite());
+  Json list = Json::array();
+  for (const auto& [learned, file] : outputs) {
+    WriteTemplate(learned, file, options.common.overwrite());
+    list.push_back(SummaryOf(learned, file, watch.seconds()));
+    if (!options.common.json) Print(DescribeLearned(learned, file));
+  }
+  if (options.common.json) {
+    Json json = options.all_classes ? Json{{"templates", list}} : list.front();
+    if (!batch.failures.empty()) json["failed"] = FailuresToJson(batch.failures);
+    PrintJson(json);
+  }
+  return batch.failures.empty() ? kDone : kPartFailed;
+}
+
 int Run(LearnCommandOptions& options) {
   const Stopwatch watch;
   CheckUsage(options);
+  if (options.method == "mt+") return RunWithContrast(options);
+  if (options.method == "mt+") return RunWithContrast(options);
   if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
   CheckWritable(options.output, options.common.overwrite());
   const FeatureSet features = options.features.Load();
@@ -123,26 +298,16 @@ int Run(LearnCommandOptions& options) {
   }
   LearnOptions learn{
       .max_rounds = options.max_rounds, .threads = options.common.threads, .progress = progress};
-  learn.profile = ParseProfile(options.learning).value_or(options.features.ParsedProfile());
+  learn.profile = options.Learning();
   const LearnedMatrix learned = LearnTemplate(performances, learn);
   const MotionTemplate result = MakeTemplate(options, features, batch, learned);
   WriteTemplate(result, options.output, options.common.overwrite());
   if (options.common.json) {
-    Json json = {{"name", result.name},
-                 {"clips", result.clips.size()},
-                 {"columns", result.matrix.column_count()},
-                 {"rounds", result.rounds},
-                 {"elapsed_s", watch.seconds()},
-                 {"file", options.output.string()}};
+    Json json = SummaryOf(result, options.output, watch.seconds());
     if (!batch.failures.empty()) json["failed"] = FailuresToJson(batch.failures);
     PrintJson(json);
   } else {
-    Print(fmt::format(
-        "{}: learned from {} in {}, {} long ({:.2f} s), written to {}\n", OnOneLine(result.name),
-        FormatCount(std::ssize(result.clips), "clip", "clips"),
-        FormatCount(result.rounds, "round", "rounds"),
-        FormatCount(result.matrix.column_count(), "column", "columns"),
-        result.matrix.total_weight() / result.matrix.rate_hz, OnOneLine(options.output.string())));
+    Print(DescribeLearned(result, options.output));
   }
   return batch.failures.empty() ? kDone : kPartFailed;
 }
@@ -166,7 +331,11 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
   auto* class_name = command->add_option("--class", options->class_name, "Class in the list")
                          ->type_name("NAME")
                          ->needs(list);
-  list->needs(class_name);
+  class_name->excludes(
+      command
+          ->add_flag("--all-classes", options->all_classes,
+                     "A template for each class of the list, into the folder -o (method mt+)")
+          ->needs(list));
   command->add_option("--actors", options->actors, "Only clips of these actors: a,b")
       ->delimiter(',')
       ->needs(list)
@@ -186,6 +355,16 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
         ->type_name("bonn|paper");
   }
   AddRateOption(*command, options->features.rate_hz);
+  command
+      ->add_option("--method", options->method,
+                   "mt, as in the paper; mt+, also what sets the class off from other motion")
+      ->check(OneOf({"mt", "mt+"}))
+      ->capture_default_str()
+      ->type_name("mt|mt+");
+  command
+      ->add_option("--background", options->background,
+                   "Other motion for mt+, without labels: best what will be searched")
+      ->type_name("PATH");
   command->add_option("--max-rounds", options->max_rounds, "Rounds of learning at most")
       ->check(WholeNumber(1, 10000))
       ->capture_default_str()
@@ -197,7 +376,9 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  kinebase learn squat_1.amc squat_2.amc gym.amc:120-480 --name squat\n"
-      "  kinebase learn --list clips.csv --class squat1Reps --actors bd,bk -o squat.template.json");
+      "  kinebase learn --list clips.csv --class squat1Reps --actors bd,bk -o squat.template.json\n"
+      "  kinebase learn --list clips.csv --all-classes --method mt+ --background takes/ -o "
+      "classes");
   command->callback([options, &exit_code] { exit_code = Run(*options); });
 }
 

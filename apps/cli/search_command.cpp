@@ -28,6 +28,7 @@ struct SearchCommandOptions {
   std::filesystem::path curve;
   std::string profile;
   std::string feature_set;
+  std::string method;  // Empty: as the template knows.
 };
 
 // A template that is ready to be searched for.
@@ -51,11 +52,17 @@ Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& o
   query.features = FeatureSetOfTemplate(path, query.motion_template, options.feature_set);
   if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);
   if (const auto profile = ParseProfile(options.profile)) query.motion_template.matching = *profile;
+  if (options.method == "mt" && query.motion_template.contrast) {
+    // Threshold and confidence are about other costs.
+    query.motion_template.contrast.reset();
+    query.motion_template.calibration.reset();
+    query.motion_template.tau.reset();
+  }
+  if (options.method == "mt+" && !query.motion_template.contrast) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "is a plain template; learn it with --method mt+ for that", {path});
+  }
   return query;
-}
-
-QuantizedTemplate Quantized(const MotionTemplate& motion_template) {
-  return Quantize(motion_template.matrix, motion_template.quantisation, motion_template.matching);
 }
 
 std::vector<NamedHit> SearchOne(const Query& query, const TakeBatch& batch,
@@ -67,15 +74,33 @@ std::vector<NamedHit> SearchOne(const Query& query, const TakeBatch& batch,
       .threads = options.common.threads,
       .progress = progress};
   std::vector<NamedHit> hits;
-  for (const TakeHit& hit : SearchTakes(Quantized(query.motion_template), batch.takes, search)) {
+  for (const TakeHit& hit : SearchTakes(Quantize(query.motion_template), batch.takes, search)) {
     hits.push_back({query.motion_template.name, batch.takes[hit.take].path, hit});
+  }
+  return hits;
+}
+
+// Templates that know what sets their class off are searched together, as they are rivals.
+std::vector<NamedHit> SearchTogether(std::span<const MotionTemplate> templates,
+                                     const TakeBatch& batch, const SearchCommandOptions& options,
+                                     const ProgressCallback& progress) {
+  const auto found = RankTakes(templates, batch.takes,
+                               {.tau = options.tau,
+                                .most_hits = options.most_hits,
+                                .threads = options.common.threads,
+                                .progress = progress});
+  std::vector<NamedHit> hits;
+  for (std::size_t t = 0; t < templates.size(); ++t) {
+    for (const TakeHit& hit : found[t]) {
+      hits.push_back({templates[t].name, batch.takes[hit.take].path, hit});
+    }
   }
   return hits;
 }
 
 std::string CurveTable(const Query& query, const TakeBatch& batch) {
   std::string text = "file,column,frame,delta,start_frame\n";
-  const QuantizedTemplate quantized = Quantized(query.motion_template);
+  const QuantizedTemplate quantized = Quantize(query.motion_template);
   for (const TakeFeatures& take : batch.takes) {
     const DeltaCurve curve = ComputeDelta(quantized, take.features.columns);
     const std::string file = CsvField(take.path.string());
@@ -104,7 +129,8 @@ Json ToJson(const std::vector<NamedHit>& hits, const std::vector<TakeFailure>& f
                     {"last_frame", hit.last_frame},
                     {"start_s", hit.start_s},
                     {"end_s", hit.end_s},
-                    {"cost", hit.cost}});
+                    {"cost", hit.cost},
+                    {"confidence", hit.confidence ? Json(*hit.confidence) : Json()}});
   }
   Json json = {{"hits", std::move(list)}, {"scanned_frames", frames}, {"elapsed_s", elapsed_s}};
   if (!failures.empty()) {
@@ -145,18 +171,31 @@ int Run(const SearchCommandOptions& options) {
 
   const ProgressCallback progress = MakeProgress(options.common);
   std::map<FeatureKey, TakeBatch> batches;
+  std::map<FeatureKey, std::vector<MotionTemplate>> together;
   std::vector<NamedHit> hits;
+  const auto append = [&hits](std::vector<NamedHit> found) {
+    hits.insert(hits.end(), std::make_move_iterator(found.begin()),
+                std::make_move_iterator(found.end()));
+  };
+  const bool with_poses = std::ranges::any_of(
+      queries, [](const Query& query) { return query.motion_template.contrast.has_value(); });
   for (const Query& query : queries) {
     const double rate_hz = query.motion_template.matrix.rate_hz;
-    const auto [entry, is_new] = batches.try_emplace({query.features.hash, rate_hz});
+    const FeatureKey key = {query.features.hash, rate_hz};
+    const auto [entry, is_new] = batches.try_emplace(key);
     TakeBatch& batch = entry->second;
     if (is_new) {
       batch = LoadManyTakeFeatures(stretches, query.features, rate_hz, options.common.load,
-                                   options.common.threads, progress);
+                                   options.common.threads, progress, with_poses);
     }
-    auto found = SearchOne(query, batch, options, progress);
-    hits.insert(hits.end(), std::make_move_iterator(found.begin()),
-                std::make_move_iterator(found.end()));
+    if (query.motion_template.contrast) {
+      together[key].push_back(query.motion_template);
+    } else {
+      append(SearchOne(query, batch, options, progress));
+    }
+  }
+  for (const auto& [key, templates] : together) {
+    append(SearchTogether(templates, batches.at(key), options, progress));
   }
   std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.cost; });
   if (hits.size() > options.most_hits) hits.resize(options.most_hits);
@@ -210,6 +249,12 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
       ->add_option("--curve", options->curve,
                    "Also write the cost of the best match that ends at each column (CSV)")
       ->type_name("FILE");
+  command
+      ->add_option("--method", options->method,
+                   "mt, as in the paper; mt+, with all that a template learned so knows (default: "
+                   "the latter where it can)")
+      ->check(OneOf({"mt", "mt+"}))
+      ->type_name("mt|mt+");
   AddProfileOption(*command, options->profile, "Matching by another profile than the template's");
   AddFeatureSetOption(*command, options->feature_set);
   AddOutputOptions(*command, options->common);

@@ -40,6 +40,13 @@ std::string JoinPaths(const std::vector<fs::path>& paths) {
   return text;
 }
 
+// The list's folder, then others.
+std::vector<fs::path> PlacesOf(const fs::path& list, std::span<const fs::path> folders) {
+  std::vector<fs::path> places = {fs::absolute(list).parent_path()};
+  places.insert(places.end(), folders.begin(), folders.end());
+  return places;
+}
+
 // Where the files of a list are: by name below its folder, then below others.
 class FileIndex {
  public:
@@ -134,7 +141,7 @@ Recording LoadStretch(const TakeStretch& stretch, const LoadOptions& options) {
 }
 
 TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
-                              double rate_hz, const LoadOptions& options) {
+                              double rate_hz, const LoadOptions& options, bool with_poses) {
   Recording recording = LoadStretch(stretch, options);
   TakeFeatures take{.path = stretch.file,
                     .stretch = stretch,
@@ -143,7 +150,9 @@ TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& feat
                     .frame_count = recording.frame_count(),
                     .diagnostics = std::move(recording.diagnostics)};
   try {
-    take.features = ExtractFeatures(StandardJoints(recording, take.diagnostics), features, rate_hz);
+    const JointTrajectories joints = StandardJoints(recording, take.diagnostics);
+    take.features = ExtractFeatures(joints, features, rate_hz);
+    if (with_poses) take.poses = ExtractPoses(joints, rate_hz);
   } catch (const Error& error) {
     if (!error.place().file.empty()) throw;
     throw Error(error.code(), error.message(), {stretch.file});
@@ -153,12 +162,12 @@ TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& feat
 
 TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const FeatureSet& features,
                                double rate_hz, const LoadOptions& options, int threads,
-                               const ProgressCallback& progress) {
+                               const ProgressCallback& progress, bool with_poses) {
   std::vector<std::optional<TakeFeatures>> takes(stretches.size());
   std::vector<std::optional<Error>> errors(stretches.size());
   ParallelFor(stretches.size(), threads, "reading", progress, [&](std::size_t i) {
     try {
-      takes[i] = LoadTakeFeatures(stretches[i], features, rate_hz, options);
+      takes[i] = LoadTakeFeatures(stretches[i], features, rate_hz, options, with_poses);
     } catch (const Error& error) {
       errors[i] = error;
     } catch (const std::bad_alloc&) {
@@ -177,39 +186,48 @@ TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const Fea
   return batch;
 }
 
-std::vector<TakeStretch> ClipsOfClass(const fs::path& list, const std::string& class_name,
-                                      std::span<const std::string> actors,
-                                      std::span<const fs::path> folders) {
+std::vector<ListedClip> ReadClipList(const fs::path& list, std::span<const fs::path> folders) {
   const CsvTable table = ParseCsv(MappedFile(list).text(), list);
   const std::size_t file_column = table.Column("file");
   const std::size_t class_column = table.Column("class");
   const auto actor_column = table.FindColumn("actor");
-  if (!actor_column && !actors.empty()) (void)table.Column("actor");  // Says that it is missing.
+  const FileIndex index(PlacesOf(list, folders));
+  std::vector<ListedClip> clips;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    const fs::path* file = index.Find(fs::path(row[file_column]).filename().string());
+    clips.push_back({.name = row[file_column],
+                     .file = file == nullptr ? fs::path() : *file,
+                     .class_name = row[class_column],
+                     .actor = actor_column ? row[*actor_column] : std::string(),
+                     .line = table.lines[i]});
+  }
+  return clips;
+}
 
-  std::vector<fs::path> places = {fs::absolute(list).parent_path()};
-  places.insert(places.end(), folders.begin(), folders.end());
-  const FileIndex index(places);
+std::vector<TakeStretch> ClipsOfClass(const fs::path& list, const std::string& class_name,
+                                      std::span<const std::string> actors,
+                                      std::span<const fs::path> folders) {
+  if (!actors.empty()) {  // Says that the column is missing.
+    (void)ParseCsv(MappedFile(list).text(), list).Column("actor");
+  }
   std::vector<TakeStretch> clips;
   std::set<std::string> classes;
   std::set<std::string> performers;  // Of the class.
-  bool class_is_there = false;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const auto& row = table.rows[i];
-    classes.insert(row[class_column]);
-    if (row[class_column] != class_name) continue;
-    class_is_there = true;
-    if (actor_column) performers.insert(row[*actor_column]);
-    if (!actors.empty() && std::ranges::find(actors, row[*actor_column]) == actors.end()) continue;
-    const fs::path* file = index.Find(fs::path(row[file_column]).filename().string());
-    if (file == nullptr) {
+  for (const ListedClip& clip : ReadClipList(list, folders)) {
+    classes.insert(clip.class_name);
+    if (clip.class_name != class_name) continue;
+    performers.insert(clip.actor);
+    if (!actors.empty() && std::ranges::find(actors, clip.actor) == actors.end()) continue;
+    if (clip.file.empty()) {
       throw Error(ErrorCode::kNotFound,
-                  fmt::format("'{}' is not below {}; name its folder with --in", row[file_column],
-                              JoinPaths(places)),
-                  {list, table.lines[i]});
+                  fmt::format("'{}' is not below {}; name its folder with --in", clip.name.string(),
+                              JoinPaths(PlacesOf(list, folders))),
+                  {list, clip.line});
     }
-    clips.push_back({.file = *file});
+    clips.push_back({.file = clip.file});
   }
-  if (!class_is_there) {
+  if (!classes.contains(class_name)) {
     throw Error(
         ErrorCode::kNotFound,
         fmt::format("has no class '{}'; there are: {}", class_name, fmt::join(classes, ", ")),

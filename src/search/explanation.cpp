@@ -1,5 +1,6 @@
 #include "kinebase/search/explanation.h"
 
+#include "search/local_costs.h"
 #include "search/recurrence.h"
 
 namespace kinebase {
@@ -14,22 +15,34 @@ internal::Step StepBetween(const PathCell& before, const PathCell& cell) {
 
 }  // namespace
 
+double CostOfFeature(const QuantizedTemplate& motion_template, const ExplainedCell& cell,
+                     int feature) {
+  const auto column = static_cast<std::size_t>(cell.cell.template_column);
+  const double cost =
+      motion_template.costs.empty()
+          ? motion_template.columns[column].scale
+          : motion_template.costs[column * static_cast<std::size_t>(motion_template.feature_count) +
+                                  static_cast<std::size_t>(feature)];
+  return cost * cell.share;
+}
+
 std::vector<ExplainedCell> ExplainPath(const QuantizedTemplate& motion_template,
                                        std::span<const std::uint64_t> columns, int last) {
   std::vector<ExplainedCell> explained;
+  const internal::LocalCosts costs(motion_template);
   internal::Step step = internal::Step::kNone;
   for (const PathCell& cell : TracePath(motion_template, columns, last)) {
     if (!explained.empty()) step = StepBetween(explained.back().cell, cell);
-    const QuantizedColumn& column =
-        motion_template.columns[static_cast<std::size_t>(cell.template_column)];
-    const std::uint64_t differs =
-        columns[static_cast<std::size_t>(cell.recording_column)] ^ column.ones;
-    explained.push_back(
-        {.cell = cell,
-         .agreed = column.consistent & ~differs,
-         .disagreed = column.consistent & differs,
-         .cost_of_one = internal::StepCost(motion_template.matching, step, column.scale) /
-                        motion_template.column_count()});
+    const auto column = static_cast<std::size_t>(cell.template_column);
+    const std::uint64_t disagreed =
+        costs.Disagreeing(column, columns[static_cast<std::size_t>(cell.recording_column)]);
+    const double share =
+        internal::StepCost(motion_template.matching, step, 1.0) / motion_template.column_count();
+    explained.push_back({.cell = cell,
+                         .agreed = motion_template.columns[column].consistent & ~disagreed,
+                         .disagreed = disagreed,
+                         .cost = costs.Of(column, disagreed) * share,
+                         .share = share});
   }
   return explained;
 }

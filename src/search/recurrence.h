@@ -4,7 +4,6 @@
 // hold the two against each other bit for bit.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <limits>
 
@@ -36,10 +35,6 @@ struct Predecessors {
   consider(Step::kOneTwo, costs.one_two);
   consider(Step::kTwoOne, costs.two_one);
   return step;
-}
-
-[[nodiscard]] inline double LocalCost(const QuantizedColumn& column, std::uint64_t features) {
-  return std::popcount((features ^ column.ones) & column.consistent) * column.scale;
 }
 
 // What a cell adds to the path that enters it with this step.

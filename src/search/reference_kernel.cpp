@@ -1,4 +1,5 @@
-#include <array>
+#include "search/reference_kernel.h"
+
 #include <utility>
 
 #include "kinebase/search/subsequence_dtw.h"
@@ -37,34 +38,43 @@ std::int32_t StartBehind(internal::Step step, const Row& one_up, const Row& two_
 
 }  // namespace
 
-DeltaCurve ComputeDeltaReference(const QuantizedTemplate& motion_template,
-                                 std::span<const std::uint64_t> columns) {
+namespace internal {
+
+DeltaCurve ComputeDelta(const LocalCosts& costs, std::size_t rows, Profile matching,
+                        std::span<const std::uint64_t> columns) {
   Row two_up(columns.size());
   Row one_up(columns.size());
   Row row(columns.size());
-  for (int k = 0; k < motion_template.column_count(); ++k) {
+  for (std::size_t k = 0; k < rows; ++k) {
     std::swap(two_up, one_up);
     std::swap(one_up, row);
-    const QuantizedColumn& column = motion_template.columns[k];
     for (std::size_t l = 0; l < columns.size(); ++l) {
-      const double local_cost = internal::LocalCost(column, columns[l]);
+      const double local_cost = costs.At(k, columns[l]);
       if (k == 0) {
         row.cost[l] = local_cost;
         row.start[l] = static_cast<std::int32_t>(l);
         continue;
       }
       double cost = 0;
-      const internal::Step step = internal::ChooseStep({.one_one = one_up.CostBefore(l, 1),
-                                                        .one_two = one_up.CostBefore(l, 2),
-                                                        .two_one = two_up.CostBefore(l, 1)},
-                                                       cost);
-      row.cost[l] = cost + internal::StepCost(motion_template.matching, step, local_cost);
+      const Step step = ChooseStep({.one_one = one_up.CostBefore(l, 1),
+                                    .one_two = one_up.CostBefore(l, 2),
+                                    .two_one = two_up.CostBefore(l, 1)},
+                                   cost);
+      row.cost[l] = cost + StepCost(matching, step, local_cost);
       row.start[l] = StartBehind(step, one_up, two_up, l);
     }
   }
   DeltaCurve curve{std::move(row.cost), std::move(row.start)};
-  for (double& delta : curve.delta) delta /= motion_template.column_count();
+  for (double& delta : curve.delta) delta /= static_cast<double>(rows);
   return curve;
+}
+
+}  // namespace internal
+
+DeltaCurve ComputeDeltaReference(const QuantizedTemplate& motion_template,
+                                 std::span<const std::uint64_t> columns) {
+  return internal::ComputeDelta(internal::LocalCosts(motion_template),
+                                motion_template.columns.size(), motion_template.matching, columns);
 }
 
 }  // namespace kinebase

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "kinebase/search/subsequence_dtw.h"
+#include "search/local_costs.h"
 #include "search/recurrence.h"
 
 namespace kinebase {
@@ -13,6 +14,7 @@ std::vector<PathCell> TracePath(const QuantizedTemplate& motion_template,
   // A path goes at most two columns back for each row. Cells further left may come out differently
   // in this window, but none of them lies on a path that ends in its last column.
   const int first = std::max(0, last - 2 * (rows - 1));
+  const internal::LocalCosts costs_of(motion_template);
   const int width = last - first + 1;
   std::vector<double> costs(static_cast<std::size_t>(rows) * width, internal::kUnreachable);
   std::vector<Step> steps(costs.size(), Step::kNone);
@@ -22,7 +24,7 @@ std::vector<PathCell> TracePath(const QuantizedTemplate& motion_template,
   };
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < width; ++l) {
-      const double local_cost = internal::LocalCost(motion_template.columns[k], columns[first + l]);
+      const double local_cost = costs_of.At(static_cast<std::size_t>(k), columns[first + l]);
       double cost = 0;
       Step step = Step::kNone;
       if (k > 0) {

@@ -4,6 +4,7 @@
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
+#include "kinebase/motion/standard_skeleton.h"
 
 namespace kinebase {
 
@@ -34,14 +35,47 @@ std::optional<Profile> ParseProfile(std::string_view text) {
   return std::nullopt;
 }
 
+namespace {
+
+template <typename T>
+void MirrorRows(std::vector<T>& matrix, const std::vector<int>& rows) {
+  const std::vector<T> from = matrix;
+  for (std::size_t first = 0; first < from.size(); first += rows.size()) {
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      matrix[first + row] = from[first + static_cast<std::size_t>(rows[row])];
+    }
+  }
+}
+
+// Values of poses: joints change sides, and what pointed left points right.
+std::vector<int> MirrorPoseRows() {
+  std::vector<int> rows;
+  for (int joint = 0; joint < kStandardJointCount; ++joint) {
+    const int other = static_cast<int>(Mirrored(static_cast<StandardJoint>(joint)));
+    for (int axis = 0; axis < 3; ++axis) rows.push_back(3 * other + axis);
+  }
+  return rows;
+}
+
+void MirrorPoses(PoseModel& model) {
+  const std::vector<int> rows = MirrorPoseRows();
+  for (std::vector<float>* values : {&model.mean, &model.weight, &model.spread}) {
+    MirrorRows(*values, rows);
+  }
+  for (std::size_t x = 0; x < model.mean.size(); x += 3) model.mean[x] = -model.mean[x];
+}
+
+}  // namespace
+
 MotionTemplate MirrorTemplate(const MotionTemplate& motion_template, const FeatureSet& features) {
   CheckFeatureSet(motion_template, features);
   const std::vector<int> rows = features.MirrorRows();
   MotionTemplate mirrored = motion_template;
-  for (int column = 0; column < mirrored.matrix.column_count(); ++column) {
-    const std::span<const double> from = motion_template.matrix.Column(column);
-    double* to = mirrored.matrix.values.data() + from.size() * static_cast<std::size_t>(column);
-    for (std::size_t row = 0; row < from.size(); ++row) to[row] = from[rows[row]];
+  MirrorRows(mirrored.matrix.values, rows);
+  if (mirrored.contrast) {
+    MirrorRows(mirrored.contrast->entry_weights, rows);
+    MirrorPoses(mirrored.contrast->places);
+    MirrorPoses(mirrored.contrast->velocities);
   }
   // Twice mirrored is the original again, by name too.
   constexpr std::string_view kMark = " mirrored";

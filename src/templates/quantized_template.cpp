@@ -39,4 +39,25 @@ QuantizedTemplate Quantize(const TemplateMatrix& matrix, double delta, Profile m
   return quantized;
 }
 
+QuantizedTemplate Quantize(const MotionTemplate& motion_template) {
+  const TemplateMatrix& matrix = motion_template.matrix;
+  QuantizedTemplate quantized =
+      Quantize(matrix, motion_template.quantisation, motion_template.matching);
+  if (!motion_template.contrast) return quantized;
+  quantized.costs = motion_template.contrast->entry_weights;
+  for (int c = 0; c < matrix.column_count(); ++c) {
+    QuantizedColumn& column = quantized.columns[c];
+    column = {};
+    const std::span<const double> values = matrix.Column(c);
+    double* costs = quantized.costs.data() + values.size() * static_cast<std::size_t>(c);
+    for (std::size_t feature = 0; feature < values.size(); ++feature) {
+      const std::uint64_t bit = std::uint64_t{1} << feature;
+      if (values[feature] > 0.5) column.ones |= bit;
+      if (costs[feature] > 0) column.consistent |= bit;
+      if (quantized.matching == Profile::kBonn) costs[feature] *= (matrix.weights[c] + 1) / 2;
+    }
+  }
+  return quantized;
+}
+
 }  // namespace kinebase

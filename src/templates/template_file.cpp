@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "fmt/format.h"
+#include "fmt/ranges.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/features/pose_stream.h"
 #include "nlohmann/json.hpp"
 #include "templates/matrix_check.h"
 
@@ -21,7 +23,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kFormat = "kinebase-template";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
+// Of plain templates, which programs that know no contrast read as well.
+constexpr int kPlainVersion = 1;
 
 // A value for a message, not longer than a line can bear.
 std::string ShownValue(const json& value) {
@@ -92,6 +96,7 @@ class ObjectReader {
     return {At(key), NameOf(key), file_};
   }
 
+  [[nodiscard]] bool Has(std::string_view key) const { return object_.contains(key); }
   [[nodiscard]] bool IsNull(std::string_view key) const { return At(key).is_null(); }
 
   [[noreturn]] void FailAt(std::string_view key, std::string_view expected) const {
@@ -232,9 +237,97 @@ TemplateMatrix ReadMatrix(const ObjectReader& root) {
 
 bool IsThreshold(double tau) { return std::isfinite(tau) && tau >= 0; }
 
+// Rows of equal length, one for each column of the matrix.
+template <typename T>
+std::vector<T> ReadRows(const ObjectReader& object, std::string_view key, int rows, int length) {
+  std::vector<T> numbers;
+  const json& list = object.Array(key);
+  if (list.size() != static_cast<std::size_t>(rows)) {
+    object.FailAt(key, fmt::format("a list for each of the {} columns", rows));
+  }
+  for (std::size_t row = 0; row < list.size(); ++row) {
+    const std::string name = fmt::format("{}[{}]", object.NameOf(key), row);
+    if (!list[row].is_array() || list[row].size() != static_cast<std::size_t>(length)) {
+      ObjectReader::FailWith(fmt::format("{} is {}; expected a list of {} numbers", name,
+                                         ShownValue(list[row]), length),
+                             object.file());
+    }
+    for (const double value : ReadValues(list[row], name, object)) {
+      numbers.push_back(static_cast<T>(value));
+    }
+  }
+  return numbers;
+}
+
+PoseModel ReadPoseModel(const ObjectReader& object, int columns) {
+  object.AllowOnly({"spread", "mean", "weight"});
+  PoseModel model{.mean = ReadRows<float>(object, "mean", columns, kPoseValues),
+                  .weight = ReadRows<float>(object, "weight", columns, kPoseValues)};
+  for (const double value : ReadValues(object.Array("spread"), object.NameOf("spread"), object)) {
+    model.spread.push_back(static_cast<float>(value));
+  }
+  if (model.spread.size() != kPoseValues) {
+    object.FailAt("spread", fmt::format("a list of {} numbers", kPoseValues));
+  }
+  return model;
+}
+
+Contrast ReadContrast(const ObjectReader& object, const TemplateMatrix& matrix) {
+  object.AllowOnly({"entry_weights", "places", "velocities"});
+  const int columns = matrix.column_count();
+  return {.entry_weights = ReadRows<double>(object, "entry_weights", columns, matrix.feature_count),
+          .places = ReadPoseModel(object.Object("places"), columns),
+          .velocities = ReadPoseModel(object.Object("velocities"), columns)};
+}
+
+Calibration ReadCalibration(const ObjectReader& object) {
+  object.AllowOnly({"slope", "offset"});
+  return {.slope = object.Number("slope"), .offset = object.Number("offset")};
+}
+
+template <typename T>
+bool AreWeights(const std::vector<T>& weights) {
+  return std::ranges::all_of(weights, [](T each) { return std::isfinite(each) && each >= 0; });
+}
+
+// What is wrong with it, as "a place without a mean"; empty if nothing is.
+std::string ProblemOf(const PoseModel& model, int columns) {
+  const std::size_t values = static_cast<std::size_t>(columns) * kPoseValues;
+  if (model.mean.size() != values || model.weight.size() != values ||
+      model.spread.size() != kPoseValues) {
+    return "poses of another size than the matrix";
+  }
+  const bool is_finite =
+      std::ranges::all_of(model.mean, [](float each) { return std::isfinite(each); });
+  if (!is_finite || !AreWeights(model.weight) || !AreWeights(model.spread)) {
+    return "poses with a number that is not finite, or a weight or spread below 0";
+  }
+  for (std::size_t i = 0; i < values; ++i) {
+    if (model.weight[i] > 0 && model.spread[i % kPoseValues] == 0) {
+      return "poses with a weight where the spread is 0";
+    }
+  }
+  return {};
+}
+
+std::string ProblemOf(const Contrast& contrast, const TemplateMatrix& matrix) {
+  if (contrast.entry_weights.size() != matrix.values.size()) {
+    return "entry weights of another size than the matrix";
+  }
+  if (!AreWeights(contrast.entry_weights)) return "an entry weight that is not finite or below 0";
+  const std::string places = ProblemOf(contrast.places, matrix.column_count());
+  return places.empty() ? ProblemOf(contrast.velocities, matrix.column_count()) : places;
+}
+
+std::string ProblemOf(const Calibration& calibration) {
+  const bool is_fine = std::isfinite(calibration.slope) && std::isfinite(calibration.offset);
+  return is_fine ? "" : "a calibration that is not finite";
+}
+
 MotionTemplate ReadFields(const ObjectReader& root) {
   root.AllowOnly({"format", "version", "name", "learning", "matching", "feature_set", "clips",
-                  "rounds", "quantisation", "tau", "tau_origin", "matrix"});
+                  "rounds", "quantisation", "tau", "tau_origin", "matrix", "contrast",
+                  "calibration"});
   MotionTemplate result;
   result.name = root.String("name");
   result.learning = ReadProfile(root, "learning");
@@ -255,6 +348,14 @@ MotionTemplate ReadFields(const ObjectReader& root) {
   }
   result.tau_origin = root.String("tau_origin");
   result.matrix = ReadMatrix(root);
+  if (root.Has("contrast")) {
+    result.contrast = ReadContrast(root.Object("contrast"), result.matrix);
+    const std::string problem = ProblemOf(*result.contrast, result.matrix);
+    if (!problem.empty()) ObjectReader::FailWith("contrast has " + problem, root.file());
+  }
+  if (root.Has("calibration")) {
+    result.calibration = ReadCalibration(root.Object("calibration"));
+  }
   return result;
 }
 
@@ -267,6 +368,12 @@ void CheckWritten(const MotionTemplate& motion_template) {
   }
   if (motion_template.tau && !IsThreshold(*motion_template.tau)) {
     problem = fmt::format("tau {}; expected a number of at least 0", *motion_template.tau);
+  }
+  if (motion_template.contrast && problem.empty()) {
+    problem = ProblemOf(*motion_template.contrast, motion_template.matrix);
+  }
+  if (motion_template.calibration && problem.empty()) {
+    problem = ProblemOf(*motion_template.calibration);
   }
   if (motion_template.rounds < 0) {
     problem = fmt::format("{} rounds; expected at least 0", motion_template.rounds);
@@ -332,6 +439,32 @@ std::string FormatMatrix(const TemplateMatrix& matrix) {
   return out + "\n    ]\n  }";
 }
 
+// The same for any numbers, a row of them a line.
+template <typename T>
+std::string FormatRows(std::span<const T> numbers, std::size_t length, std::string_view indent) {
+  std::string out = "[";
+  for (std::size_t first = 0; first < numbers.size(); first += length) {
+    out += fmt::format("{}\n{}  [{}]", first > 0 ? "," : "", indent,
+                       fmt::join(numbers.subspan(first, length), ", "));
+  }
+  return out + fmt::format("\n{}]", indent);
+}
+
+std::string FormatPoseModel(const PoseModel& model) {
+  return fmt::format(
+      "{{\n      \"spread\": [{}],\n      \"mean\": {},\n      \"weight\": {}\n    }}",
+      fmt::join(model.spread, ", "), FormatRows(std::span(model.mean), kPoseValues, "      "),
+      FormatRows(std::span(model.weight), kPoseValues, "      "));
+}
+
+std::string FormatContrast(const Contrast& contrast, const TemplateMatrix& matrix) {
+  return fmt::format(
+      "{{\n    \"entry_weights\": {},\n    \"places\": {},\n    \"velocities\": {}\n  }}",
+      FormatRows(std::span(contrast.entry_weights), static_cast<std::size_t>(matrix.feature_count),
+                 "    "),
+      FormatPoseModel(contrast.places), FormatPoseModel(contrast.velocities));
+}
+
 }  // namespace
 
 MotionTemplate ParseTemplate(std::string_view json_text, const std::filesystem::path& file) {
@@ -353,7 +486,8 @@ std::string FormatTemplate(const MotionTemplate& motion_template) {
     out += fmt::format("{}  \"{}\": {}", out.size() > 2 ? ",\n" : "", key, value);
   };
   add("format", fmt::format("\"{}\"", kFormat));
-  add("version", std::to_string(kVersion));
+  const bool is_plain = !motion_template.contrast && !motion_template.calibration;
+  add("version", std::to_string(is_plain ? kPlainVersion : kVersion));
   add("name", JsonString(motion_template.name));
   add("learning", fmt::format("\"{}\"", ToString(motion_template.learning)));
   add("matching", fmt::format("\"{}\"", ToString(motion_template.matching)));
@@ -366,6 +500,14 @@ std::string FormatTemplate(const MotionTemplate& motion_template) {
   add("tau", motion_template.tau ? ToShortestText(*motion_template.tau) : "null");
   add("tau_origin", JsonString(motion_template.tau_origin));
   add("matrix", FormatMatrix(motion_template.matrix));
+  if (motion_template.contrast) {
+    add("contrast", FormatContrast(*motion_template.contrast, motion_template.matrix));
+  }
+  if (motion_template.calibration) {
+    add("calibration", fmt::format("{{\"slope\": {}, \"offset\": {}}}",
+                                   ToShortestText(motion_template.calibration->slope),
+                                   ToShortestText(motion_template.calibration->offset)));
+  }
   return out + "\n}\n";
 }
 

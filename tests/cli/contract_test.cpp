@@ -138,9 +138,9 @@ TEST(SearchJson, HasTheDocumentedFieldsAndUnits) {
   EXPECT_EQ(json["scanned_frames"], frames);
   ASSERT_GE(json["hits"].size(), 4U);
   for (const auto& hit : json["hits"]) {
-    EXPECT_THAT(FieldsOf(hit),
-                ElementsAre("template:string", "file:string", "first_frame:integer",
-                            "last_frame:integer", "start_s:number", "end_s:number", "cost:number"));
+    EXPECT_THAT(FieldsOf(hit), ElementsAre("template:string", "file:string", "first_frame:integer",
+                                           "last_frame:integer", "start_s:number", "end_s:number",
+                                           "cost:number", "confidence:null"));
     EXPECT_EQ(hit["template"], "squat1Reps");
     const int first = hit["first_frame"];
     const int last = hit["last_frame"];

@@ -24,13 +24,21 @@ RC_GTEST_PROP(ExplainPath, AccountsForTheWholeCost, ()) {
     const std::vector<ExplainedCell> cells = ExplainPath(motion_template, recording, last);
     RC_ASSERT(cells.empty() == (curve.start[last] < 0));
     double cost = 0;
+    double by_features = 0;
     for (const ExplainedCell& each : cells) {
       const QuantizedColumn& column = motion_template.columns[each.cell.template_column];
       RC_ASSERT((each.agreed | each.disagreed) == column.consistent);
       RC_ASSERT((each.agreed & each.disagreed) == 0);
-      cost += std::popcount(each.disagreed) * each.cost_of_one;
+      cost += each.cost;
+      for (int feature = 0; feature < features; ++feature) {
+        if (((each.disagreed >> feature) & 1U) != 0) {
+          by_features += CostOfFeature(motion_template, each, feature);
+        }
+      }
     }
-    if (!cells.empty()) RC_ASSERT(std::abs(cost - curve.delta[last]) < 1e-12);
+    if (cells.empty()) continue;
+    RC_ASSERT(std::abs(cost - curve.delta[last]) < 1e-12);
+    RC_ASSERT(std::abs(by_features - curve.delta[last]) < 1e-12);
   }
 }
 
@@ -43,8 +51,8 @@ TEST(ExplainPath, SaysWhichFeatureWasWrongWhere) {
   const std::vector<std::uint64_t> recording = {0b11, 0b10, 0b01};
   const std::vector<ExplainedCell> cells = ExplainPath(motion_template, recording, 2);
   ASSERT_EQ(cells.size(), 2);
-  EXPECT_EQ(cells[0], (ExplainedCell{{0, 1}, 0b01, 0b00, .5}));
-  EXPECT_EQ(cells[1], (ExplainedCell{{1, 2}, 0b01, 0b10, .25}));
+  EXPECT_EQ(cells[0], (ExplainedCell{{0, 1}, 0b01, 0b00, 0, .5}));
+  EXPECT_EQ(cells[1], (ExplainedCell{{1, 2}, 0b01, 0b10, .25, .5}));
 }
 
 }  // namespace

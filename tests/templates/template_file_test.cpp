@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinebase/core/error.h"
+#include "kinebase/features/pose_stream.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
 #include "templates/matrices.h"
@@ -40,6 +41,27 @@ MotionTemplate SampleTemplate() {
   return result;
 }
 
+PoseModel RandomPoses(Random& random, int columns) {
+  PoseModel model;
+  for (int i = 0; i < kPoseValues; ++i) model.spread.push_back(static_cast<float>(random.Unit()));
+  model.spread[3] = 1e-30F;
+  for (int i = 0; i < columns * kPoseValues; ++i) {
+    model.mean.push_back(static_cast<float>(random.Unit() - 0.5));
+    model.weight.push_back(static_cast<float>(random.Unit() / kPoseValues));
+  }
+  return model;
+}
+
+Contrast RandomContrast(Random& random, const TemplateMatrix& matrix) {
+  Contrast contrast;
+  for (std::size_t i = 0; i < matrix.values.size(); ++i) {
+    contrast.entry_weights.push_back(random.Below(3) == 0 ? 0 : random.Unit());
+  }
+  contrast.places = RandomPoses(random, matrix.column_count());
+  contrast.velocities = RandomPoses(random, matrix.column_count());
+  return contrast;
+}
+
 MotionTemplate RandomTemplate(Random& random) {
   const auto text = [&] {
     const char* const pieces[] = {"a", "\"", "\\", "\n", "ü", "/", "\x01", "走", " "};
@@ -64,6 +86,8 @@ MotionTemplate RandomTemplate(Random& random) {
   result.tau_origin = text();
   result.matrix = RandomMatrix(random, 1 + random.Below(20), 1 + random.Below(64));
   result.matrix.rate_hz = 120 * random.Unit() + 1e-9;
+  if (random.Below(2) == 0) result.contrast = RandomContrast(random, result.matrix);
+  if (random.Below(2) == 0) result.calibration = Calibration{random.Unit(), -random.Unit()};
   return result;
 }
 
@@ -110,13 +134,60 @@ TEST(TemplateFile, WritesAFileAndNeverOverAnotherUnasked) {
 
 TEST(TemplateFile, RefusesANewerVersionInPlainWords) {
   json document = json::parse(FormatTemplate(SampleTemplate()));
-  document["version"] = 2;
+  document["version"] = 3;
   document["invention"] = "of tomorrow";
   const Error error = ErrorOf([&] { (void)ParseTemplate(document.dump(), "new.json"); });
   EXPECT_EQ(error.code(), ErrorCode::kMismatch);
   EXPECT_THAT(error.what(), HasSubstr("new.json"));
-  EXPECT_THAT(error.what(), HasSubstr("version 2"));
+  EXPECT_THAT(error.what(), HasSubstr("version 3"));
   EXPECT_THAT(error.what(), HasSubstr("newer Kinebase"));
+}
+
+// Programs that know no contrast would take such a template for a plain one.
+TEST(TemplateFile, IsOfVersionTwoOnlyIfItNeedsToBe) {
+  Random random(3);
+  MotionTemplate motion_template = SampleTemplate();
+  const auto version = [&] { return json::parse(FormatTemplate(motion_template))["version"]; };
+  EXPECT_EQ(version(), 1);
+  motion_template.calibration = Calibration{.slope = 30, .offset = -4};
+  EXPECT_EQ(version(), 2);
+  motion_template.calibration.reset();
+  motion_template.contrast = RandomContrast(random, motion_template.matrix);
+  EXPECT_EQ(version(), 2);
+}
+
+TEST(TemplateFile, RefusesAContrastThatDoesNotFit) {
+  Random random(4);
+  MotionTemplate motion_template = SampleTemplate();
+  motion_template.contrast = RandomContrast(random, motion_template.matrix);
+  motion_template.calibration = Calibration{.slope = 30, .offset = -4};
+  const json good = json::parse(FormatTemplate(motion_template));
+  struct Change {
+    std::string pointer;
+    json value;
+    std::string message;
+  };
+  for (const auto& [pointer, value, message] : std::vector<Change>{
+           {"/contrast/entry_weights/1/0", -1, "below 0"},
+           {"/contrast/entry_weights/1", json::array({1}), "contrast.entry_weights[1]"},
+           {"/contrast/entry_weights", json::array(), "each of the 3 columns"},
+           {"/contrast/places/mean/2", 7, "contrast.places.mean[2]"},
+           {"/contrast/places/spread", json::array({1}), "72 numbers"},
+           {"/contrast/places/spread/3", 0, "where the spread is 0"},
+           {"/contrast/velocities/weight/0/0", "much", "expected a number"},
+           {"/contrast/velocities", 7, "an object"},
+           {"/contrast/places/mode", 7, "unknown field"},
+           {"/calibration/slope", "steep", "a number"},
+       }) {
+    json bad = good;
+    bad[json::json_pointer(pointer)] = value;
+    const Error error = ErrorOf([&] { (void)ParseTemplate(bad.dump(), "bad.json"); });
+    EXPECT_EQ(error.code(), ErrorCode::kMalformedFile) << pointer;
+    EXPECT_THAT(error.what(), HasSubstr(message)) << pointer;
+  }
+  motion_template.contrast->places.mean.pop_back();
+  EXPECT_EQ(ErrorOf([&] { (void)FormatTemplate(motion_template); }).code(),
+            ErrorCode::kInvalidArgument);
 }
 
 void ExpectMalformed(const json& document, const std::string& expected) {

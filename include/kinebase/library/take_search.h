@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "kinebase/library/takes.h"
+#include "kinebase/search/ranking.h"
 #include "kinebase/search/template_search.h"
 
 namespace kinebase {
@@ -20,6 +22,7 @@ struct TakeHit {
   double start_s = 0;  // From the start of the take to the start of the first frame,
   double end_s = 0;    // and to the end of the last.
   double cost = 0;
+  std::optional<double> confidence;  // How likely it is right, where the template knows.
 
   friend bool operator==(const TakeHit&, const TakeHit&) = default;
 };
@@ -29,5 +32,20 @@ struct TakeHit {
 [[nodiscard]] std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
                                                std::span<const TakeFeatures> takes,
                                                const SearchOptions& options = {});
+
+// RankHits, its columns turned into frames and seconds: for each template its hits, best first,
+// below its own threshold where options.tau does not say another.
+//
+// takes  With poses.
+// Errors, cost, threads  As RankHits.
+struct RankTakesOptions {
+  std::optional<double> tau;
+  std::size_t most_hits = 500;
+  int threads = 0;
+  ProgressCallback progress;
+};
+[[nodiscard]] std::vector<std::vector<TakeHit>> RankTakes(std::span<const MotionTemplate> templates,
+                                                          std::span<const TakeFeatures> takes,
+                                                          const RankTakesOptions& options = {});
 
 }  // namespace kinebase

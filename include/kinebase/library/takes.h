@@ -10,6 +10,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/core/progress.h"
 #include "kinebase/features/feature_extraction.h"
+#include "kinebase/features/pose_stream.h"
 #include "kinebase/motion/motion_file.h"
 
 namespace kinebase {
@@ -47,14 +48,16 @@ struct TakeFeatures {
   double rate_hz = 0;  // Of the file.
   std::int64_t frame_count = 0;
   FeatureMatrix features;
+  PoseStream poses;  // At the rate of the features; empty unless asked for.
   Diagnostics diagnostics;
 };
 
-// Reads one take, or a stretch of it, and extracts its features.
+// Reads one take, or a stretch of it, and extracts its features, and its poses if asked to.
 // Errors  Those of LoadRecording and StandardJoints; InvalidArgument for a stretch that leaves the
 // take.
 [[nodiscard]] TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
-                                            double rate_hz, const LoadOptions& options);
+                                            double rate_hz, const LoadOptions& options,
+                                            bool with_poses = false);
 
 struct TakeFailure {
   std::filesystem::path path;
@@ -71,7 +74,22 @@ struct TakeBatch {
 [[nodiscard]] TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches,
                                              const FeatureSet& features, double rate_hz,
                                              const LoadOptions& options, int threads,
-                                             const ProgressCallback& progress);
+                                             const ProgressCallback& progress,
+                                             bool with_poses = false);
+
+// A row of a list of clips (columns file, class, actor, …).
+struct ListedClip {
+  std::filesystem::path name;  // As the list has it.
+  std::filesystem::path file;  // Where it is; empty if it is nowhere.
+  std::string class_name;
+  std::string actor;      // Empty where the list does not tell.
+  std::int64_t line = 0;  // Of the list.
+};
+
+// All of them. Files are looked up by name below the list's folder, then below `folders`.
+// Errors  MalformedFile.
+[[nodiscard]] std::vector<ListedClip> ReadClipList(const std::filesystem::path& list,
+                                                   std::span<const std::filesystem::path> folders);
 
 // Clips of a list (columns file, class, actor, …) that belong to a class and to one of `actors`
 // (empty: all). Files are looked up by name below the list's folder, then below `folders`.

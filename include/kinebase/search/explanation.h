@@ -17,12 +17,15 @@ struct ExplainedCell {
   PathCell cell;
   std::uint64_t agreed = 0;
   std::uint64_t disagreed = 0;
-  // What one of the features that disagree adds to the cost of the hit. So Δ is the sum of
-  // popcount(disagreed) · cost_of_one over the path, but for rounding.
-  double cost_of_one = 0;
+  double cost = 0;   // What the cell adds to the hit's: Δ is their sum, but for rounding.
+  double share = 0;  // Of a feature's cost in that: of the step, and of the template's length.
 
   friend bool operator==(const ExplainedCell&, const ExplainedCell&) = default;
 };
+
+// What a feature (from 0) that disagrees in a cell of the template adds to the hit's cost.
+[[nodiscard]] double CostOfFeature(const QuantizedTemplate& motion_template,
+                                   const ExplainedCell& cell, int feature);
 
 // The path behind delta[last], as TracePath; empty if none ends there.
 // Cost  That of TracePath.

@@ -50,6 +50,33 @@ struct TemplateClip {
   friend bool operator==(const TemplateClip&, const TemplateClip&) = default;
 };
 
+// The poses of a class, column by column: joints' places, or their velocities.
+struct PoseModel {
+  std::vector<float> mean;    // [column × kPoseValues]
+  std::vector<float> weight;  // [column × kPoseValues]; each column sums to 1.
+  std::vector<float> spread;  // [kPoseValues] variance of other motion.
+
+  friend bool operator==(const PoseModel&, const PoseModel&) = default;
+};
+
+// What sets the class off from other motion; templates/contrast.h.
+struct Contrast {
+  std::vector<double> entry_weights;  // [column × feature]; each column sums to 1, or is all 0.
+  PoseModel places;
+  PoseModel velocities;
+
+  friend bool operator==(const Contrast&, const Contrast&) = default;
+};
+
+// How often a hit is right, by its cost: 1 / (1 + exp(slope · cost + offset));
+// templates/calibration.h.
+struct Calibration {
+  double slope = 0;
+  double offset = 0;
+
+  friend bool operator==(const Calibration&, const Calibration&) = default;
+};
+
 // A template with all that is known of it; what a template file holds.
 struct MotionTemplate {
   std::string name;
@@ -61,8 +88,10 @@ struct MotionTemplate {
   std::vector<TemplateClip> clips;
   int rounds = 0;             // Of learning; 0 = not learned.
   double quantisation = 0.1;  // δ: values ≤ δ count as 0, values ≥ 1 − δ as 1, others as "any".
-  std::optional<double> tau;  // Its own threshold on the cost of a hit.
-  std::string tau_origin;     // How it was chosen.
+  std::optional<double> tau;         // Its own threshold on the cost of a hit.
+  std::string tau_origin;            // How it was chosen.
+  std::optional<Contrast> contrast;  // Without: a plain template, as in the paper.
+  std::optional<Calibration> calibration;
 
   friend bool operator==(const MotionTemplate&, const MotionTemplate&) = default;
 };

@@ -22,6 +22,8 @@ struct QuantizedTemplate {
   int feature_count = 0;
   Profile matching = Profile::kBonn;
   std::vector<QuantizedColumn> columns;
+  // [column × feature] what a mismatch costs, instead of the columns' scales; empty: those.
+  std::vector<double> costs;
 
   [[nodiscard]] int column_count() const { return static_cast<int>(columns.size()); }
 };
@@ -30,5 +32,9 @@ struct QuantizedTemplate {
 // Errors  InvalidArgument.
 [[nodiscard]] QuantizedTemplate Quantize(const TemplateMatrix& matrix, double delta,
                                          Profile matching);
+
+// As the template is matched. With a contrast every entry asks for what it mostly was, and a
+// mismatch costs its weight, by the column's as above; nothing is left free for being undecided.
+[[nodiscard]] QuantizedTemplate Quantize(const MotionTemplate& motion_template);
 
 }  // namespace kinebase

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "search/kernels/scan_plan.h"
+#include "search/reference_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "search/kernels/scan_kernel.cpp"
@@ -341,11 +342,35 @@ namespace kinebase::internal {
 
 HWY_EXPORT(ScanRangeOnTarget);
 
+// Entry weights cannot be counted in bytes.
+void ScanWeighted(const ScanPlan& plan, std::span<const std::uint64_t> columns, std::size_t begin,
+                  std::size_t end, double* delta, std::int32_t* start) {
+  constexpr std::size_t kWeightedTile = 4096;  // Three rows of it stay in the second-level cache.
+  const std::size_t rows = plan.rows().size();
+  const Profile matching = plan.doubles_two_one() ? Profile::kBonn : Profile::kPaper;
+  for (std::size_t tile = begin; tile < end; tile += kWeightedTile) {
+    const std::size_t tile_end = std::min(end, tile + kWeightedTile);
+    const std::size_t halo = std::min(tile, 2 * (rows - 1));
+    const std::size_t first = tile - halo;
+    const DeltaCurve curve =
+        ComputeDelta(plan.costs(), rows, matching, columns.subspan(first, tile_end - first));
+    for (std::size_t i = halo; i < curve.delta.size(); ++i) {
+      delta[first + i - begin] = curve.delta[i];
+      const std::int32_t local = curve.start[i];
+      start[first + i - begin] = local < 0 ? -1 : local + static_cast<std::int32_t>(first);
+    }
+  }
+}
+
 void ScanRange(const ScanPlan& plan, std::span<const std::uint64_t> columns, std::size_t begin,
                std::size_t end, double* delta, std::int32_t* start) {
   if (plan.rows().empty()) {
     std::fill_n(delta, end - begin, std::numeric_limits<double>::infinity());
     std::fill_n(start, end - begin, -1);
+    return;
+  }
+  if (plan.costs().has_weights()) {
+    ScanWeighted(plan, columns, begin, end, delta, start);
     return;
   }
   HWY_DYNAMIC_DISPATCH(ScanRangeOnTarget)(plan, columns.data(), begin, end, delta, start);

@@ -20,7 +20,7 @@ NibbleTable MakeTable(const QuantizedColumn& column, std::size_t nibble) {
 }  // namespace
 
 ScanPlan::ScanPlan(const QuantizedTemplate& motion_template)
-    : doubles_two_one_(motion_template.matching == Profile::kBonn) {
+    : doubles_two_one_(motion_template.matching == Profile::kBonn), costs_(motion_template) {
   const auto looks_at = [](const QuantizedColumn& column, std::size_t nibble) {
     return ((column.consistent >> (4 * nibble)) & 0xF) != 0;
   };

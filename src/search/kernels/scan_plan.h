@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kinebase/templates/quantized_template.h"
+#include "search/local_costs.h"
 
 namespace kinebase::internal {
 
@@ -34,11 +35,13 @@ class ScanPlan {
 
   [[nodiscard]] const std::vector<ScanRow>& rows() const { return rows_; }
   [[nodiscard]] bool doubles_two_one() const { return doubles_two_one_; }
+  [[nodiscard]] const LocalCosts& costs() const { return costs_; }
 
  private:
   std::vector<NibbleTable> tables_;
   std::vector<ScanRow> rows_;  // One for each template column.
   bool doubles_two_one_;       // Profile bonn.
+  LocalCosts costs_;           // For templates with entry weights, which are not counted.
 };
 
 // Δ and starts of the columns [begin, end) of a recording; the same whatever the cut.

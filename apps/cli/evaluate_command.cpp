@@ -1,0 +1,232 @@
+// kinebase evaluate: how well methods find classes in actors they have not seen.
+
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/feature_options.h"
+#include "fmt/format.h"
+#include "fmt/ranges.h"
+#include "kinebase/library/evaluation.h"
+
+namespace kinebase::cli {
+namespace {
+
+struct EvaluateCommandOptions {
+  CommonOptions common;
+  FeatureOptions features;
+  std::filesystem::path list;
+  std::vector<std::filesystem::path> folders;
+  std::vector<std::filesystem::path> distractors;
+  std::filesystem::path possibly_relevant;
+  std::filesystem::path labels;
+  std::string protocol = "leave-one-actor-out";
+  std::vector<std::string> methods = {"mt", "mt+"};
+  std::string format = "text";
+};
+
+Json ToJson(const TauScores& scores) {
+  return {{"tau", scores.tau},
+          {"precision", scores.precision},
+          {"recall", scores.recall},
+          {"f1", scores.f1}};
+}
+
+Json ToJson(const Scores& scores) {
+  Json at = Json::array();
+  for (const TauScores& each : scores.at) at.push_back(ToJson(each));
+  return {{"ap_strict", scores.ap_strict},
+          {"ap_lenient", scores.ap_lenient},
+          {"r_precision", scores.r_precision},
+          {"recall_in_5", scores.recall_in_5},
+          {"recall_in_10", scores.recall_in_10},
+          {"recall_in_20", scores.recall_in_20},
+          {"classified", scores.classified},
+          {"at_own", ToJson(scores.at_own)},
+          {"at", at}};
+}
+
+Json ToJson(const Evaluation& evaluation) {
+  Json methods = Json::array();
+  for (const MethodResult& result : evaluation.methods) {
+    Json classes = Json::array();
+    for (const ClassResult& each : result.classes) {
+      Json actors = Json::object();
+      for (const auto& [actor, scores] : each.by_actor) actors[actor] = ToJson(scores);
+      classes.push_back(
+          {{"class", each.class_name}, {"mean", ToJson(each.mean)}, {"actors", actors}});
+    }
+    Json reliability = Json::array();
+    const std::vector<ReliabilityBin> bins = MeasureReliability(result);
+    for (const ReliabilityBin& bin : bins) {
+      reliability.push_back(
+          {{"hits", bin.hits}, {"confidence", bin.confidence}, {"right", bin.right}});
+    }
+    methods.push_back({{"method", result.method.name},
+                       {"macro", ToJson(result.macro)},
+                       {"calibration_error", CalibrationError(bins)},
+                       {"reliability", reliability},
+                       {"classes", classes}});
+  }
+  return methods;
+}
+
+std::string ShortNumber(double value) { return fmt::format("{:.3f}", value); }
+
+// Rows of cells; the first row is the head.
+using Rows = std::vector<std::vector<std::string>>;
+
+// AP lenient and strict, R-precision, F1 at the class's own threshold.
+Rows ScoresByClass(const Evaluation& evaluation) {
+  Rows rows = {{"class"}};
+  for (const MethodResult& result : evaluation.methods) {
+    for (const char* measure : {"AP", "strict", "R-prec", "F1"}) {
+      rows.front().push_back(fmt::format("{} {}", result.method.name, measure));
+    }
+  }
+  const auto add = [&](const std::string& name, const auto& scores_of) {
+    std::vector<std::string> row = {name};
+    for (const MethodResult& result : evaluation.methods) {
+      const Scores& scores = scores_of(result);
+      for (const double value :
+           {scores.ap_lenient, scores.ap_strict, scores.r_precision, scores.at_own.f1}) {
+        row.push_back(ShortNumber(value));
+      }
+    }
+    rows.push_back(row);
+  };
+  for (std::size_t i = 0; i < evaluation.methods.front().classes.size(); ++i) {
+    add(evaluation.methods.front().classes[i].class_name,
+        [i](const MethodResult& result) -> const Scores& { return result.classes[i].mean; });
+  }
+  add("macro", [](const MethodResult& result) -> const Scores& { return result.macro; });
+  return rows;
+}
+
+// What concerns a method as a whole.
+Rows ScoresByMethod(const Evaluation& evaluation) {
+  Rows rows = {{"method", "AP", "strict", "R-prec", "precision", "recall", "F1", "classified",
+                "calibration error"}};
+  for (const MethodResult& result : evaluation.methods) {
+    const Scores& macro = result.macro;
+    rows.push_back({std::string(result.method.name), ShortNumber(macro.ap_lenient),
+                    ShortNumber(macro.ap_strict), ShortNumber(macro.r_precision),
+                    ShortNumber(macro.at_own.precision), ShortNumber(macro.at_own.recall),
+                    ShortNumber(macro.at_own.f1), ShortNumber(macro.classified),
+                    ShortNumber(CalibrationError(MeasureReliability(result)))});
+  }
+  return rows;
+}
+
+std::string AsText(const Rows& rows) {
+  std::vector<std::string> head = {rows.front().front()};
+  for (std::size_t i = 1; i < rows.front().size(); ++i) head.push_back('>' + rows.front()[i]);
+  TextTable table(head);
+  for (std::size_t i = 1; i < rows.size(); ++i) table.Add(rows[i]);
+  return table.ToString();
+}
+
+std::string AsMarkdown(const Rows& rows) {
+  std::string text;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool is_macro = rows[i].front() == "macro";
+    text += '|';
+    for (const std::string& cell : rows[i]) {
+      text += is_macro ? fmt::format(" **{}** |", cell) : fmt::format(" {} |", cell);
+    }
+    text += '\n';
+    if (i > 0) continue;
+    text += '|';
+    for (std::size_t c = 0; c < rows[i].size(); ++c) text += c == 0 ? "---|" : "---:|";
+    text += '\n';
+  }
+  return text;
+}
+
+std::vector<Method> ChosenMethods(const std::vector<std::string>& names) {
+  std::vector<Method> methods;
+  for (const std::string& name : names) methods.push_back(*FindMethod(name));
+  return methods;
+}
+
+int Run(const EvaluateCommandOptions& options) {
+  if (options.possibly_relevant.empty() != options.labels.empty()) {
+    throw UsageError("--possibly-relevant and --labels go together");
+  }
+  const FeatureSet features = options.features.Load();
+  const ProgressCallback progress = MakeProgress(options.common);
+  EvaluationData data = LoadEvaluationData(options.list, options.folders, options.distractors,
+                                           features, options.features.rate_hz, options.common.load,
+                                           options.common.threads, progress);
+  if (!options.possibly_relevant.empty()) {
+    data.possibly_relevant = PossiblyRelevant::Read(options.possibly_relevant, options.labels);
+  }
+  for (const TakeFailure& failure : data.failures) PrintError(failure.error.what());
+  if (data.clips.empty()) return kCouldNot;
+  const Evaluation evaluation = Evaluate(
+      data, features,
+      {.protocol = options.protocol == "half" ? Protocol::kHalf : Protocol::kLeaveOneActorOut,
+       .methods = ChosenMethods(options.methods),
+       .profile = options.features.ParsedProfile(),
+       .threads = options.common.threads,
+       .progress = progress});
+  if (options.common.json) {
+    PrintJson({{"methods", ToJson(evaluation)}});
+  } else {
+    const auto as = options.format == "markdown" ? &AsMarkdown : &AsText;
+    Print(as(ScoresByMethod(evaluation)) + '\n' + as(ScoresByClass(evaluation)));
+  }
+  return data.failures.empty() ? kDone : kPartFailed;
+}
+
+}  // namespace
+
+void AddEvaluateCommand(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<EvaluateCommandOptions>();
+  CLI::App* command = program.add_subcommand(
+      "evaluate", "How well methods find motion classes in actors that they have not seen");
+  command
+      ->add_option("--clips", options->list, "Table of clips: CSV with columns file, class, actor")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--in", options->folders, "Folders with the list's files, beside its own")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--distractors", options->distractors,
+                   "Takes of other motion: every hit in them is a false alarm")
+      ->type_name("PATH");
+  command
+      ->add_option("--possibly-relevant", options->possibly_relevant,
+                   "Table of what distractors may show after all: CSV with columns class, trial, "
+                   "label")
+      ->type_name("FILE");
+  command->add_option("--labels", options->labels, "Table of the stretches that it names")
+      ->type_name("FILE");
+  command->add_option("--protocol", options->protocol, "What is learned from, what searched")
+      ->check(OneOf({"leave-one-actor-out", "half"}))
+      ->capture_default_str()
+      ->type_name("NAME");
+  std::vector<std::string> names;
+  for (const Method& method : RetrievalMethods()) names.emplace_back(method.name);
+  command->add_option("--methods", options->methods, "Methods, side by side")
+      ->delimiter(',')
+      ->check(OneOf(names))
+      ->type_name("NAMES");
+  command->add_option("--format", options->format, "Tables for people, or for a document")
+      ->check(OneOf({"text", "markdown"}))
+      ->capture_default_str()
+      ->type_name("text|markdown");
+  AddProfileOption(*command, options->features.profile,
+                   "Features, learning and matching as the authors' toolbox (bonn) or the paper");
+  AddFeatureSetOption(*command, options->features.feature_set);
+  AddRateOption(*command, options->features.rate_hz);
+  AddOutputOptions(*command, options->common);
+  AddThreadsOption(*command, options->common);
+  AddLoadOptions(*command, options->common);
+  command->footer(
+      "Example:\n  kinebase evaluate --clips clips.csv --distractors takes/ --methods mt,mt+");
+  command->callback([options, &exit_code] { exit_code = Run(*options); });
+}
+
+}  // namespace kinebase::cli

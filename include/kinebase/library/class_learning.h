@@ -1,0 +1,105 @@
+// Templates of several classes that know each other: learned together from labelled clips, with
+// what sets each off from the others, and a calibrated confidence.
+//
+// Read templates/contrast.h, templates/calibration.h and search/ranking.h first.
+// docs/design/contrast.md has the method.
+#pragma once
+
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinebase/library/takes.h"
+#include "kinebase/search/ranking.h"
+#include "kinebase/templates/calibration.h"
+#include "kinebase/templates/contrast.h"
+
+namespace kinebase {
+
+struct LabelledClip {
+  TakeFeatures take;  // With poses.
+  std::string class_name;
+  std::string actor;
+};
+
+// Which ingredients of retrieval are on.
+struct Method {
+  std::string_view name;  // "mt", "mt+" …
+  bool contrast = false;  // Entry weights from a background.
+  bool places = false;    // Hits ranked by poses,
+  bool velocities = false;
+  bool rivals = false;  // and by what other classes' templates say.
+
+  [[nodiscard]] RankOptions Ranking() const {
+    return {.places = places, .velocities = velocities, .rivals = rivals};
+  }
+};
+
+// "mt", which is the paper's, and "mt+", which is all; the ingredients added one by one:
+// "mt+weights", "mt+places", "mt+velocities".
+[[nodiscard]] std::span<const Method> RetrievalMethods();
+[[nodiscard]] const Method* FindMethod(std::string_view name);
+
+struct ClassLearningOptions {
+  Profile learning = Profile::kBonn;
+  Profile matching = Profile::kBonn;
+  int max_rounds = 10;
+  bool with_contrast = true;
+  // Recordings of motion in general, without labels, whose poses count for the background; best
+  // those that will be searched.
+  std::span<const RecordingStreams> library;
+  int threads = 0;
+  ProgressCallback progress;
+};
+
+// One template for each class of the clips, by name. The background is all clips, of all classes,
+// and the library; where there is one class alone, how often features are one is measured on the
+// library, too.
+// Errors  InvalidArgument: no clips, other features than the set's; Cancelled.
+// Cost    Of LearnTemplate for each class.
+[[nodiscard]] std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> clips,
+                                                       const FeatureSet& features,
+                                                       const ClassLearningOptions& options = {});
+
+// What a class's hits in labelled clips cost.
+struct ClassEvidence {
+  std::vector<KnownHit> unseen;    // In clips of actors that the template was not learned from,
+  std::vector<KnownHit> seen;      // and in all clips, its own among them.
+  std::vector<double> unlabelled;  // The best in each recording of the library.
+};
+using Evidence = std::map<std::string, ClassEvidence>;  // By class.
+
+// Searches each actor's clips with templates learned from the others', and all clips with
+// `templates`, which were learned from all. With one actor the two halves of each class's clips
+// take the place of actors.
+//
+// templates  As LearnClasses gives them, with contrasts if a method asks for that.
+// methods    The result is for each of them.
+// Errors     As LearnClasses.
+// Cost       Of LearnClasses for each actor.
+[[nodiscard]] std::vector<Evidence> GatherEvidence(std::span<const LabelledClip* const> clips,
+                                                   std::span<const MotionTemplate> templates,
+                                                   const FeatureSet& features,
+                                                   std::span<const Method> methods,
+                                                   const ClassLearningOptions& options = {});
+
+// Right is the best hit in each clip of the class; all others are wrong.
+// recordings  Hits' recordings are indices of these clips.
+[[nodiscard]] std::vector<KnownHit> JudgeAgainstClips(std::span<const RankedHit> hits,
+                                                      std::string_view class_name,
+                                                      std::span<const LabelledClip* const> clips);
+
+// Gives each template its threshold and confidence, by its name, from training clips alone.
+//
+// A right hit of somebody new costs more than those in the clips that were learned from, and less
+// than those in clips that were held back, when there was less to learn from: half way between the
+// two medians. The threshold lies a third of the way from there to the best wrong hit in any clip:
+// a library has much more motion to go wrong in than the clips of other classes. At the threshold
+// the confidence is ½. Of a class that is learned alone, wrong is the median of the library's
+// recordings. A class without right or wrong hits keeps what it has.
+void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates);
+
+}  // namespace kinebase

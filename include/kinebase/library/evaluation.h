@@ -1,0 +1,148 @@
+// How well methods find motion classes in actors they have not seen.
+//
+// Protocol "leave one actor out": for each class and actor learn from the clips of the others and
+// search all clips of the actor, of whatever class, and takes of other motion (distractors). A hit
+// is right if it lies in a clip of the class that no better hit has claimed; every other hit is a
+// false alarm. "Lenient" leaves out hits in stretches of distractors that may well show the class.
+// Protocol "half": every other clip of a class trains, the rest is searched; it shares takes and
+// people between the halves and flatters, and is for comparison with Müller & Röder, SCA 2006.
+//
+// Read library/class_learning.h first. docs/quality.md has the figures.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinebase/library/class_learning.h"
+
+namespace kinebase {
+
+// Stretches of distractors that may show a class after all.
+class PossiblyRelevant {
+ public:
+  // table   Columns class, trial, label: a trial is a file's stem, "*" any of them; "*" as a label
+  //         is the whole trial.
+  // labels  Columns trial, label, first_frame_1based, last_frame_1based.
+  // Errors  MalformedFile.
+  static PossiblyRelevant Read(const std::filesystem::path& table,
+                               const std::filesystem::path& labels);
+
+  [[nodiscard]] bool MayShow(const std::string& class_name, const std::string& trial,
+                             double frame) const;
+
+ private:
+  struct Segment {
+    std::string label;
+    double first = 0;
+    double last = 0;
+  };
+  std::map<std::string, std::vector<Segment>> segments_;                              // By trial.
+  std::map<std::string, std::vector<std::pair<std::string, std::string>>> relevant_;  // By class.
+};
+
+struct EvaluationData {
+  std::vector<LabelledClip> clips;
+  std::vector<TakeFeatures> distractors;
+  PossiblyRelevant possibly_relevant;
+  std::vector<TakeFailure> failures;  // What could not be read; the rest is evaluated.
+
+  [[nodiscard]] std::set<std::string> ClassNames() const;
+  [[nodiscard]] std::set<std::string> Actors() const;
+};
+
+enum class Protocol { kLeaveOneActorOut, kHalf };
+
+struct EvaluateOptions {
+  Protocol protocol = Protocol::kLeaveOneActorOut;
+  std::vector<Method> methods;
+  std::vector<double> taus = {0.02, 0.04, 0.06, 0.1};
+  std::size_t most_hits = 500;
+  Profile profile = Profile::kBonn;
+  int threads = 0;
+  ProgressCallback progress;
+};
+
+// A hit as it counts.
+struct JudgedHit {
+  double cost = 0;
+  bool right = false;
+  bool excused = false;  // In a stretch that may show the class.
+  double confidence = 0;
+};
+
+struct TauScores {
+  double tau = 0;
+  double precision = 0;  // Lenient.
+  double recall = 0;
+  double f1 = 0;
+};
+
+struct Scores {
+  double ap_strict = 0;
+  double ap_lenient = 0;
+  double r_precision = 0;
+  double recall_in_5 = 0;  // Of the first 5, 10, 20 hits, lenient.
+  double recall_in_10 = 0;
+  double recall_in_20 = 0;
+  double classified = 0;      // Share of clips that their own class's template fits best.
+  std::vector<TauScores> at;  // At each τ asked for,
+  TauScores at_own;           // and at the class's own, chosen from training clips only.
+};
+
+// The measures of one ranking.
+// hits      Best first.
+// relevant  Clips of the class in the stream; at least 1.
+[[nodiscard]] Scores ScoreRanking(std::span<const JudgedHit> hits, std::size_t relevant,
+                                  std::span<const double> taus, double own_tau);
+
+struct ClassResult {
+  std::string class_name;
+  std::map<std::string, Scores> by_actor;  // By the actor left out; "" in protocol half.
+  Scores mean;
+  std::map<std::string, std::vector<JudgedHit>> hits;  // By actor, best first.
+};
+
+struct MethodResult {
+  Method method;
+  std::vector<ClassResult> classes;
+  Scores macro;  // Mean over classes.
+};
+
+// How far confidences are from what they promise: hits in ten bins of confidence.
+struct ReliabilityBin {
+  std::size_t hits = 0;
+  double confidence = 0;  // Mean.
+  double right = 0;       // Share.
+};
+// Without excused hits.
+[[nodiscard]] std::vector<ReliabilityBin> MeasureReliability(const MethodResult& result);
+// Mean distance of confidence and share, weighted by hits, over bins with at least 30 of them.
+[[nodiscard]] double CalibrationError(std::span<const ReliabilityBin> bins);
+
+struct Evaluation {
+  std::vector<MethodResult> methods;
+  double stream_s = 0;  // Of all distractors.
+};
+
+// list         Clips with columns file, class, actor.
+// distractors  Files or folders.
+// Errors       Those of ReadClipList and FindMotionFiles; Cancelled.
+[[nodiscard]] EvaluationData LoadEvaluationData(const std::filesystem::path& list,
+                                                std::span<const std::filesystem::path> folders,
+                                                std::span<const std::filesystem::path> distractors,
+                                                const FeatureSet& features, double rate_hz,
+                                                const LoadOptions& load, int threads,
+                                                const ProgressCallback& progress);
+
+// Errors  InvalidArgument: fewer than two actors (or clips of a class); Cancelled.
+// Cost    A learning and a search for each class, actor and method.
+[[nodiscard]] Evaluation Evaluate(const EvaluationData& data, const FeatureSet& features,
+                                  const EvaluateOptions& options);
+
+}  // namespace kinebase

@@ -1,0 +1,49 @@
+// Hits of templates that know what sets their class off, ranked by more than features.
+//
+// Read templates/contrast.h and search/hits.h first. docs/design/contrast.md has the method and
+// what each ingredient gains.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "kinebase/core/progress.h"
+#include "kinebase/features/pose_stream.h"
+#include "kinebase/search/hits.h"
+#include "kinebase/templates/motion_template.h"
+
+namespace kinebase {
+
+struct RankOptions {
+  // The ingredients beside the template itself; each may be left out.
+  bool places = true;      // How joints lie along the path, against what the class does.
+  bool velocities = true;  // How they move.
+  bool rivals = true;      // What other templates say of the same stretch.
+  double tau = std::numeric_limits<double>::infinity();  // On the score.
+  std::size_t most_hits = 500;                           // Of each template.
+  int threads = 0;                                       // 0 = as many as the hardware has.
+  ProgressCallback progress;
+};
+
+struct RankedHit {
+  Hit hit;              // Its cost is the score: what follows, weighed and added.
+  double matching = 0;  // Δ of the template, with its entry weights.
+  double places = 0;    // Mean over the path, in units of the background's variance; at most 4.
+  double velocities = 0;
+  double rival =
+      0;  // ½ less Δ of the other template that fits best there; 0 where none comes near.
+};
+
+// For each template its hits, best first. Templates of the same name are no rivals: they stand for
+// one class in several ways. Those without a contrast are ranked by Δ and rivals alone.
+//
+// Errors   Mismatch if a recording has another rate or feature count than a template; Cancelled.
+// Cost     O(columns · sum of template columns), and the square of a template's columns a hit.
+// Threads  The result does not depend on the thread count.
+[[nodiscard]] std::vector<std::vector<RankedHit>> RankHits(
+    std::span<const MotionTemplate> templates, std::span<const RecordingStreams> recordings,
+    const RankOptions& options = {});
+
+}  // namespace kinebase

@@ -1,0 +1,234 @@
+#include "kinebase/library/class_learning.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "kinebase/core/error.h"
+#include "kinebase/templates/learning.h"
+
+namespace kinebase {
+namespace {
+
+constexpr std::array<Method, 5> kMethods = {
+    Method{.name = "mt"},
+    Method{.name = "mt+weights", .contrast = true},
+    Method{.name = "mt+places", .contrast = true, .places = true},
+    Method{.name = "mt+velocities", .contrast = true, .places = true, .velocities = true},
+    Method{.name = "mt+", .contrast = true, .places = true, .velocities = true, .rivals = true},
+};
+
+// From right to wrong hits; see Calibrate.
+constexpr double kThresholdShare = 1.0 / 3;
+// Of the confidence between them: at what right hits usually cost it is .97, at wrong ones .001.
+constexpr double kSteepness = 10;
+
+using Clips = std::vector<const LabelledClip*>;
+
+MotionTemplate LearnClass(const std::string& class_name, const Clips& clips,
+                          const FeatureSet& features, const ClassLearningOptions& options) {
+  std::vector<TemplateMatrix> performances;
+  std::vector<TemplateClip> sources;
+  for (const LabelledClip* clip : clips) {
+    performances.push_back(ToTemplateMatrix(clip->take.features));
+    sources.push_back({.file = clip->take.path.filename().string(),
+                       .first_frame = clip->take.stretch.first_frame,
+                       .last_frame = clip->take.stretch.last_frame});
+  }
+  const LearnedMatrix learned = LearnTemplate(
+      performances,
+      {.profile = options.learning, .max_rounds = options.max_rounds, .threads = options.threads});
+  return {.name = class_name,
+          .learning = options.learning,
+          .matching = options.matching,
+          .feature_set = features.name,
+          .feature_set_hash = features.hash,
+          .matrix = learned.matrix,
+          .clips = std::move(sources),
+          .rounds = static_cast<int>(learned.largest_costs.size())};
+}
+
+std::vector<RecordingStreams> RecordingsOf(std::span<const LabelledClip* const> clips) {
+  std::vector<RecordingStreams> recordings;
+  for (const LabelledClip* clip : clips) {
+    recordings.push_back({.features = &clip->take.features, .poses = &clip->take.poses});
+  }
+  return recordings;
+}
+
+void Gather(std::span<const MotionTemplate> templates, std::span<const LabelledClip* const> clips,
+            std::span<const Method> methods, int threads,
+            std::vector<KnownHit> ClassEvidence::*part, std::vector<Evidence>& evidence) {
+  std::vector<MotionTemplate> plain(templates.begin(), templates.end());
+  for (MotionTemplate& each : plain) each.contrast.reset();
+  const std::vector<RecordingStreams> recordings = RecordingsOf(clips);
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    RankOptions ranking = methods[m].Ranking();
+    ranking.threads = threads;
+    const auto hits = RankHits(methods[m].contrast ? templates : plain, recordings, ranking);
+    for (std::size_t t = 0; t < templates.size(); ++t) {
+      std::vector<KnownHit>& known = evidence[m][templates[t].name].*part;
+      const std::vector<KnownHit> judged = JudgeAgainstClips(hits[t], templates[t].name, clips);
+      known.insert(known.end(), judged.begin(), judged.end());
+    }
+  }
+}
+
+void GatherUnlabelled(std::span<const MotionTemplate> templates, std::span<const Method> methods,
+                      const ClassLearningOptions& options, std::vector<Evidence>& evidence) {
+  std::vector<MotionTemplate> plain(templates.begin(), templates.end());
+  for (MotionTemplate& each : plain) each.contrast.reset();
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    RankOptions ranking = methods[m].Ranking();
+    ranking.most_hits = std::numeric_limits<std::size_t>::max();
+    ranking.threads = options.threads;
+    const auto hits = RankHits(methods[m].contrast ? templates : plain, options.library, ranking);
+    for (std::size_t t = 0; t < templates.size(); ++t) {
+      std::set<int> seen;  // Hits come best first.
+      for (const RankedHit& ranked : hits[t]) {
+        if (!seen.insert(ranked.hit.recording).second) continue;
+        evidence[m][templates[t].name].unlabelled.push_back(ranked.hit.cost);
+      }
+    }
+  }
+}
+
+// What right hits usually cost, and what the best wrong one does.
+struct CostRange {
+  double right = 0;
+  double wrong = 0;
+};
+
+std::optional<double> Median(std::vector<double> costs) {
+  if (costs.empty()) return std::nullopt;
+  std::ranges::sort(costs);
+  return (costs[(costs.size() - 1) / 2] + costs[costs.size() / 2]) / 2;
+}
+
+std::optional<double> MedianOfRight(std::span<const KnownHit> hits) {
+  std::vector<double> costs;
+  for (const KnownHit& hit : hits) {
+    if (hit.right) costs.push_back(hit.cost);
+  }
+  return Median(std::move(costs));
+}
+
+std::optional<CostRange> UsualCosts(const ClassEvidence& evidence) {
+  const auto seen = MedianOfRight(evidence.seen);
+  if (!seen) return std::nullopt;
+  CostRange range{.right = (*seen + MedianOfRight(evidence.unseen).value_or(*seen)) / 2,
+                  .wrong = std::numeric_limits<double>::infinity()};
+  for (const auto* hits : {&evidence.seen, &evidence.unseen}) {
+    for (const KnownHit& hit : *hits) {
+      if (!hit.right) range.wrong = std::min(range.wrong, hit.cost);
+    }
+  }
+  if (std::isinf(range.wrong)) range.wrong = Median(evidence.unlabelled).value_or(range.wrong);
+  // A class that is usually mistaken, or one of which nothing is known.
+  if (!(range.wrong > range.right) || std::isinf(range.wrong)) return std::nullopt;
+  return range;
+}
+
+// What takes the place of actors, for each clip.
+std::vector<std::string> GroupsOf(std::span<const LabelledClip* const> clips) {
+  std::vector<std::string> groups;
+  std::set<std::string> actors;
+  for (const LabelledClip* clip : clips) {
+    groups.push_back(clip->actor);
+    actors.insert(clip->actor);
+  }
+  if (actors.size() > 1) return groups;
+  std::map<std::string, int> seen;  // By class.
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    groups[i] = seen[clips[i]->class_name]++ % 2 == 0 ? "even" : "odd";
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::span<const Method> RetrievalMethods() { return kMethods; }
+
+const Method* FindMethod(std::string_view name) {
+  const auto* const found = std::ranges::find(kMethods, name, &Method::name);
+  return found == kMethods.end() ? nullptr : found;
+}
+
+std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> clips,
+                                         const FeatureSet& features,
+                                         const ClassLearningOptions& options) {
+  std::map<std::string, Clips> by_class;
+  for (const LabelledClip* clip : clips) by_class[clip->class_name].push_back(clip);
+  if (by_class.empty()) throw Error(ErrorCode::kInvalidArgument, "no clips to learn from");
+  Background background;
+  if (options.with_contrast) {
+    std::vector<RecordingStreams> labelled = RecordingsOf(clips);
+    if (by_class.size() == 1) {
+      labelled.insert(labelled.end(), options.library.begin(), options.library.end());
+      background = MeasureBackground(labelled);
+    } else {
+      background = MeasureBackground(labelled, options.library);
+    }
+  }
+  std::vector<MotionTemplate> templates;
+  for (const auto& [name, of_class] : by_class) {
+    if (options.progress && !options.progress("learning", templates.size(), by_class.size())) {
+      throw Error(ErrorCode::kCancelled, "learning was cancelled");
+    }
+    MotionTemplate& learned = templates.emplace_back(LearnClass(name, of_class, features, options));
+    if (options.with_contrast) {
+      learned.contrast = MeasureContrast(learned, RecordingsOf(of_class), background);
+    }
+  }
+  return templates;
+}
+
+std::vector<KnownHit> JudgeAgainstClips(std::span<const RankedHit> hits,
+                                        std::string_view class_name,
+                                        std::span<const LabelledClip* const> clips) {
+  std::vector<KnownHit> known;
+  std::set<int> claimed;
+  for (const RankedHit& ranked : hits) {
+    const LabelledClip& clip = *clips[static_cast<std::size_t>(ranked.hit.recording)];
+    const bool right = clip.class_name == class_name && claimed.insert(ranked.hit.recording).second;
+    known.push_back({.cost = ranked.hit.cost, .right = right});
+  }
+  return known;
+}
+
+std::vector<Evidence> GatherEvidence(std::span<const LabelledClip* const> clips,
+                                     std::span<const MotionTemplate> templates,
+                                     const FeatureSet& features, std::span<const Method> methods,
+                                     const ClassLearningOptions& options) {
+  std::vector<Evidence> evidence(methods.size());
+  Gather(templates, clips, methods, options.threads, &ClassEvidence::seen, evidence);
+  if (templates.size() == 1) GatherUnlabelled(templates, methods, options, evidence);
+  const std::vector<std::string> groups = GroupsOf(clips);
+  for (const std::string& group : std::set<std::string>(groups.begin(), groups.end())) {
+    Clips train;
+    Clips test;
+    for (std::size_t i = 0; i < clips.size(); ++i) {
+      (groups[i] == group ? test : train).push_back(clips[i]);
+    }
+    if (train.empty()) continue;
+    Gather(LearnClasses(train, features, options), test, methods, options.threads,
+           &ClassEvidence::unseen, evidence);
+  }
+  return evidence;
+}
+
+void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates) {
+  for (MotionTemplate& each : templates) {
+    const auto of_class = evidence.find(each.name);
+    if (of_class == evidence.end()) continue;
+    const std::optional<CostRange> range = UsualCosts(of_class->second);
+    if (!range) continue;
+    each.tau = range->right + kThresholdShare * (range->wrong - range->right);
+    each.tau_origin = "a third of the way from right to wrong hits in the training clips";
+    const double slope = kSteepness / (range->wrong - range->right);
+    each.calibration = Calibration{.slope = slope, .offset = -slope * *each.tau};
+  }
+}
+
+}  // namespace kinebase

@@ -1,0 +1,143 @@
+// learn --method mt+, search with such templates, evaluate.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/expectations.h"
+#include "cli/run_program.h"
+#include "cli/synthetic_library.h"
+#include "kinebase/templates/template_file.h"
+#include "support/files.h"
+
+namespace kinebase::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class ContrastCommands : public testing::Test {
+ protected:
+  // Templates of all classes of both actors, in <scratch>/classes.
+  fs::path LearnAll() {
+    const fs::path folder = library_.scratch() / "classes";
+    const ProgramResult run = RunKinebase({"learn", "--list", library_.list(), "--all-classes",
+                                           "--method", "mt+", "-o", folder, "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(json::parse(run.out).at("templates").size(), NamesBelow(folder).size());
+    return folder;
+  }
+
+  SyntheticLibrary library_;
+};
+
+TEST_F(ContrastCommands, LearnEveryClassOfAListWithThresholdAndConfidence) {
+  const fs::path folder = LearnAll();
+  for (const std::string& name : NamesBelow(folder)) {
+    const MotionTemplate learned = ReadTemplate(folder / name);
+    EXPECT_TRUE(learned.contrast) << name;
+    EXPECT_FALSE(learned.clips.empty()) << name;
+    EXPECT_EQ(fs::path(name).filename(), learned.name + ".template.json");
+    EXPECT_EQ(learned.tau.has_value(), learned.calibration.has_value()) << name;
+  }
+  const fs::path squat = folder / "squat1Reps.template.json";
+  EXPECT_THAT(RunKinebase({"template", "show", squat}).out, HasSubstr("a third of the way"));
+  // The plain matrix is the same as without.
+  EXPECT_EQ(ReadTemplate(squat).matrix, [&] {
+    const fs::path plain = library_.scratch() / "plain.json";
+    RunKinebase({"learn", "--list", library_.list(), "--class", "squat1Reps", "-o", plain});
+    return ReadTemplate(plain).matrix;
+  }());
+}
+
+TEST_F(ContrastCommands, FindTheClassWithConfidence) {
+  const fs::path squat = LearnAll() / "squat1Reps.template.json";
+  const auto hits_of = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {
+        "search", squat.string(), "--in", library_.folder().string(), "--json", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult run = RunKinebase(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return json::parse(run.out).at("hits");
+  };
+  const json hits = hits_of({});
+  ASSERT_FALSE(hits.empty());
+  for (const json& hit : hits) {
+    EXPECT_THAT(hit["file"].get<std::string>(), HasSubstr("SYN_"));
+    EXPECT_GE(hit["confidence"].get<double>(), 0.5);
+  }
+  EXPECT_GE(hits_of({"--tau", "9"}).size(), hits.size());
+  const json plain = hits_of({"--method", "mt"});
+  ASSERT_FALSE(plain.empty());
+  EXPECT_TRUE(plain[0]["confidence"].is_null());
+}
+
+TEST_F(ContrastCommands, LearnOneClassFromClipsAgainstABackground) {
+  const fs::path squat = library_.scratch() / "squat.json";
+  const ProgramResult run =
+      RunKinebase({"learn", library_.Squat(), library_.Clip("squat1Reps", "sb", 1), "--name",
+                   "squat", "--method", "mt+", "--background", library_.folder(), "-o", squat});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const MotionTemplate learned = ReadTemplate(squat);
+  EXPECT_EQ(learned.name, "squat");
+  EXPECT_EQ(learned.clips.size(), 2);
+  EXPECT_TRUE(learned.contrast && learned.calibration && learned.tau);
+  const json hits = json::parse(
+      RunKinebase({"search", squat, "--in", library_.folder(), "--json", "--quiet"}).out)["hits"];
+  ASSERT_FALSE(hits.empty());
+  EXPECT_THAT(hits[0]["file"].get<std::string>(), HasSubstr("squat1Reps"));
+}
+
+TEST_F(ContrastCommands, SayWhatIsMissing) {
+  const std::string squat = library_.Squat();
+  const std::string out = library_.scratch() / "x.json";
+  const std::string list = library_.list();
+  struct Wrong {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string message;
+  };
+  for (const auto& [arguments, exit_code, message] : std::vector<Wrong>{
+           {{"learn", squat, "--method", "mt+", "-o", out}, 2, "--background"},
+           {{"learn", squat, "--background", squat, "-o", out}, 2, "--method mt+"},
+           {{"learn", "--list", list, "-o", out}, 2, "--class NAME or --all-classes"},
+           {{"learn", "--list", list, "--all-classes", "--method", "mt+"}, 2, "-o FOLDER"},
+           {{"learn", "--list", list, "--all-classes", "-o", out}, 2, "--method mt+"},
+           {{"learn", "--list", list, "--class", "nothing", "--method", "mt+", "-o", out},
+            1,
+            "has no class 'nothing'"},
+           {{"search", library_.Learn("squat1Reps"), "--in", squat, "--method", "mt+"},
+            1,
+            "plain template"},
+           {{"evaluate", "--clips", out}, 1, "x.json"},
+           {{"evaluate", "--clips", list, "--methods", "best"}, 2, "mt+"},
+           {{"evaluate", "--clips", list, "--possibly-relevant", list}, 2, "--labels"},
+       }) {
+    ExpectOneError(RunKinebase(arguments), exit_code, {message});
+  }
+}
+
+TEST_F(ContrastCommands, EvaluateLeavesEachActorOut) {
+  const ProgramResult run = RunKinebase({"evaluate", "--clips", library_.list(), "--methods",
+                                         "mt,mt+weights,mt+", "--json", "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json methods = json::parse(run.out).at("methods");
+  ASSERT_EQ(methods.size(), 3);
+  EXPECT_EQ(methods[2]["method"], "mt+");
+  for (const json& method : methods) {
+    for (const char* measure : {"ap_strict", "ap_lenient", "r_precision", "classified"}) {
+      const double value = method["macro"][measure];
+      EXPECT_GT(value, 0.5) << measure;  // Made-up people move much alike.
+      EXPECT_LE(value, 1) << measure;
+    }
+    EXPECT_EQ(method["reliability"].size(), 10);
+    EXPECT_EQ(method["classes"][0]["actors"].size(), 2);
+  }
+  const ProgramResult text = RunKinebase(
+      {"evaluate", "--clips", library_.list(), "--protocol", "half", "--format", "markdown"});
+  EXPECT_THAT(text.out, HasSubstr("| squat1Reps | "));
+  EXPECT_THAT(text.out, HasSubstr("| **macro** | "));
+}
+
+}  // namespace
+}  // namespace kinebase::test
