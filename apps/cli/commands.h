@@ -19,6 +19,7 @@ void AddTemplateCommand(CLI::App& program, int& exit_code);
 void AddSearchCommand(CLI::App& program, int& exit_code);
 void AddExplainCommand(CLI::App& program, int& exit_code);
 void AddEvaluateCommand(CLI::App& program, int& exit_code);
+void AddAnnotateCommand(CLI::App& program, int& exit_code);
 void AddSynthCommand(CLI::App& program, int& exit_code);
 void AddHdm05Command(CLI::App& program, int& exit_code);
 void AddManualCommands(CLI::App& program, int& exit_code);  // manual, completion

@@ -144,6 +144,44 @@ std::string AsMarkdown(const Rows& rows) {
   return text;
 }
 
+Json ToJson(const AccuracyCounts& counts) {
+  return {{"precision", counts.precision()}, {"recall", counts.recall()}, {"f1", counts.f1()}};
+}
+
+Json ToJson(const AnnotationAccuracy& accuracy) {
+  return {{"frames", ToJson(AnnotationAccuracy::Micro(accuracy.frames))},
+          {"segments", ToJson(AnnotationAccuracy::Micro(accuracy.segments))}};
+}
+
+Json ToJson(const std::vector<AnnotateEvaluation>& results) {
+  Json methods = Json::array();
+  for (const AnnotateEvaluation& result : results) {
+    Json actors = Json::object();
+    for (const auto& [actor, accuracy] : result.by_actor) actors[actor] = ToJson(accuracy);
+    Json method = ToJson(result.accuracy);
+    method["method"] = result.method;
+    method["actors"] = std::move(actors);
+    methods.push_back(std::move(method));
+  }
+  return methods;
+}
+
+// Micro precision, recall and F1 over frames, and over segments.
+Rows AccuracyRows(const std::vector<AnnotateEvaluation>& results) {
+  Rows rows = {{"method", "frames P", "R", "F1", "segments P", "R", "F1"}};
+  for (const AnnotateEvaluation& result : results) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row.emplace_back(result.method);
+    for (const auto* counts : {&result.accuracy.frames, &result.accuracy.segments}) {
+      const AccuracyCounts micro = AnnotationAccuracy::Micro(*counts);
+      for (const double value : {micro.precision(), micro.recall(), micro.f1()}) {
+        row.push_back(ShortNumber(value));
+      }
+    }
+  }
+  return rows;
+}
+
 std::vector<Method> ChosenMethods(const std::vector<std::string>& names) {
   std::vector<Method> methods;
   for (const std::string& name : names) methods.push_back(*FindMethod(name));
@@ -164,6 +202,20 @@ int Run(const EvaluateCommandOptions& options) {
   }
   for (const TakeFailure& failure : data.failures) PrintError(failure.error.what());
   if (data.clips.empty()) return kCouldNot;
+  const auto as = options.format == "markdown" ? &AsMarkdown : &AsText;
+  if (options.protocol == "annotate") {
+    const auto results = EvaluateAnnotation(data, features,
+                                            {.methods = ChosenMethods(options.methods),
+                                             .profile = options.features.ParsedProfile(),
+                                             .threads = options.common.threads,
+                                             .progress = progress});
+    if (options.common.json) {
+      PrintJson({{"methods", ToJson(results)}});
+    } else {
+      Print(as(AccuracyRows(results)));
+    }
+    return data.failures.empty() ? kDone : kPartFailed;
+  }
   const Evaluation evaluation = Evaluate(
       data, features,
       {.protocol = options.protocol == "half" ? Protocol::kHalf : Protocol::kLeaveOneActorOut,
@@ -174,7 +226,6 @@ int Run(const EvaluateCommandOptions& options) {
   if (options.common.json) {
     PrintJson({{"methods", ToJson(evaluation)}});
   } else {
-    const auto as = options.format == "markdown" ? &AsMarkdown : &AsText;
     Print(as(ScoresByMethod(evaluation)) + '\n' + as(ScoresByClass(evaluation)));
   }
   return data.failures.empty() ? kDone : kPartFailed;
@@ -204,7 +255,7 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
   command->add_option("--labels", options->labels, "Table of the stretches that it names")
       ->type_name("FILE");
   command->add_option("--protocol", options->protocol, "What is learned from, what searched")
-      ->check(OneOf({"leave-one-actor-out", "half"}))
+      ->check(OneOf({"leave-one-actor-out", "half", "annotate"}))
       ->capture_default_str()
       ->type_name("NAME");
   std::vector<std::string> names;

@@ -72,6 +72,7 @@ int RunProgram(int argc, char** argv) {
   kinebase::cli::AddSearchCommand(program, exit_code);
   kinebase::cli::AddExplainCommand(program, exit_code);
   kinebase::cli::AddEvaluateCommand(program, exit_code);
+  kinebase::cli::AddAnnotateCommand(program, exit_code);
   kinebase::cli::AddSynthCommand(program, exit_code);
   kinebase::cli::AddHdm05Command(program, exit_code);
   kinebase::cli::AddManualCommands(program, exit_code);

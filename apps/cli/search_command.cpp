@@ -197,7 +197,7 @@ int Run(const SearchCommandOptions& options) {
   for (const auto& [key, templates] : together) {
     append(SearchTogether(templates, batches.at(key), options, progress));
   }
-  std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.cost; });
+  std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.score; });
   if (hits.size() > options.most_hits) hits.resize(options.most_hits);
 
   const TakeBatch& batch = batches.begin()->second;  // All read the same files.

@@ -1,7 +1,5 @@
 #include "kinebase/features/pose_stream.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "fmt/format.h"
@@ -62,19 +60,6 @@ PoseStream ExtractPoses(const JointTrajectories& standard_joints, double rate_hz
     }
   }
   return poses;
-}
-
-void PoseVelocity(const PoseStream& poses, int column, std::span<float> velocity) {
-  const int before = std::max(column - kVelocityReach, 0);
-  const int after = std::min(column + kVelocityReach, poses.column_count() - 1);
-  if (after <= before) {
-    std::ranges::fill(velocity, 0.0F);
-    return;
-  }
-  const std::span<const float> from = poses.Column(before);
-  const std::span<const float> to = poses.Column(after);
-  const auto per_second = static_cast<float>(poses.rate_hz / (after - before));
-  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = (to[i] - from[i]) * per_second;
 }
 
 }  // namespace kinebase

@@ -11,12 +11,11 @@
 namespace kinebase {
 namespace {
 
-constexpr std::array<Method, 5> kMethods = {
+constexpr std::array<Method, 4> kMethods = {
     Method{.name = "mt"},
     Method{.name = "mt+weights", .contrast = true},
     Method{.name = "mt+places", .contrast = true, .places = true},
-    Method{.name = "mt+velocities", .contrast = true, .places = true, .velocities = true},
-    Method{.name = "mt+", .contrast = true, .places = true, .velocities = true, .rivals = true},
+    Method{.name = "mt+", .contrast = true, .places = true, .rivals = true},
 };
 
 // From right to wrong hits; see Calibrate.

@@ -19,7 +19,8 @@ inline TakeHit ToTakeHit(const Hit& hit, const TakeFeatures& take, std::size_t i
           .last_frame = frames.last + 1,
           .start_s = static_cast<double>(frames.first) / take.rate_hz,
           .end_s = static_cast<double>(frames.last + 1) / take.rate_hz,
-          .cost = hit.cost};
+          .cost = hit.cost,
+          .score = hit.cost};
 }
 
 }  // namespace kinebase::internal

@@ -35,9 +35,11 @@ std::vector<std::vector<TakeHit>> RankTakes(std::span<const MotionTemplate> temp
   for (std::size_t t = 0; t < templates.size(); ++t) {
     const double tau = options.tau.value_or(templates[t].tau.value_or(kDefaultTau));
     for (const RankedHit& each : ranked[t]) {
-      if (each.hit.cost > tau || hits[t].size() == options.most_hits) break;
+      if (hits[t].size() == options.most_hits) break;
+      if (each.hit.cost > tau) continue;
       const auto index = static_cast<std::size_t>(each.hit.recording);
       TakeHit& hit = hits[t].emplace_back(internal::ToTakeHit(each.hit, takes[index], index));
+      hit.score = each.score;
       const std::optional<Calibration>& calibration = templates[t].calibration;
       if (calibration) hit.confidence = Confidence(*calibration, hit.cost);
     }

@@ -1,7 +1,6 @@
 #include "kinebase/search/ranking.h"
 
 #include <algorithm>
-#include <array>
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
@@ -14,16 +13,13 @@ namespace {
 // Chosen on actors left out among the training actors (docs/design/contrast.md); within a factor of
 // two of each the result is the same but for noise.
 constexpr double kPlacesWeight = 0.1;
-constexpr double kVelocitiesWeight = 0.1;
 constexpr double kRivalWeight = 0.5;
 // Two spreads off is wrong; more says nothing more.
 constexpr double kMostOff = 4;
 // A template with half of its entries wrong is no rival.
 constexpr double kNoRival = 0.5;
 
-using PoseValues = std::array<float, kPoseValues>;
-
-double Distance(const PoseModel& model, int column, const PoseValues& pose) {
+double Distance(const PoseModel& model, int column, std::span<const float> pose) {
   const std::size_t first = static_cast<std::size_t>(column) * kPoseValues;
   double distance = 0;
   for (std::size_t i = 0; i < pose.size(); ++i) {
@@ -90,9 +86,14 @@ class Ranker {
     }
     std::vector<std::vector<RankedHit>> hits(searched_.size());
     for (std::size_t t = 0; t < searched_.size(); ++t) {
-      for (const Hit& hit : ExtractHits(curves[t], kUnlimited, index)) {
+      const double tau =
+          options_.tau.value_or(searched_[t].motion_template->tau.value_or(kUnlimited));
+      // What is added to Δ is never below 0.
+      for (const Hit& hit : options_.every_end ? EveryEnd(curves[t], tau, index)
+                                               : ExtractHits(curves[t], kUnlimited, index)) {
+        if (hit.cost > tau) continue;
         const RankedHit ranked = Score(hit, t, recording, curves);
-        if (ranked.hit.cost <= options_.tau) hits[t].push_back(ranked);
+        if (ranked.hit.cost <= tau) hits[t].push_back(ranked);
       }
     }
     return hits;
@@ -101,36 +102,40 @@ class Ranker {
  private:
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+  static std::vector<Hit> EveryEnd(const DeltaCurve& curve, double tau, int index) {
+    std::vector<Hit> hits;
+    for (std::size_t column = 0; column < curve.delta.size(); ++column) {
+      if (curve.start[column] < 0 || curve.delta[column] > tau) continue;
+      hits.push_back({.recording = index,
+                      .first = curve.start[column],
+                      .last = static_cast<int>(column),
+                      .cost = curve.delta[column]});
+    }
+    return hits;
+  }
+
   [[nodiscard]] RankedHit Score(const Hit& hit, std::size_t t, const RecordingStreams& recording,
                                 std::span<const DeltaCurve> curves) const {
     RankedHit ranked{.hit = hit, .matching = hit.cost};
     const std::optional<Contrast>& contrast = searched_[t].motion_template->contrast;
-    if (contrast && (options_.places || options_.velocities)) {
+    if (contrast && options_.places) {
       ComparePoses(*contrast, searched_[t].quantized, recording, ranked);
     }
+    ranked.hit.cost += kPlacesWeight * ranked.places;
     if (options_.rivals) ranked.rival = Rivalry(hit, t, searched_, curves);
-    ranked.hit.cost += kPlacesWeight * ranked.places + kVelocitiesWeight * ranked.velocities +
-                       kRivalWeight * ranked.rival;
+    ranked.score = ranked.hit.cost + kRivalWeight * ranked.rival;
     return ranked;
   }
 
-  void ComparePoses(const Contrast& contrast, const QuantizedTemplate& quantized,
-                    const RecordingStreams& recording, RankedHit& ranked) const {
+  static void ComparePoses(const Contrast& contrast, const QuantizedTemplate& quantized,
+                           const RecordingStreams& recording, RankedHit& ranked) {
     const std::vector<PathCell> path =
         TracePath(quantized, recording.features->columns, ranked.hit.last);
-    PoseValues values{};
     for (const PathCell& cell : path) {
-      if (options_.places) {
-        std::ranges::copy(recording.poses->Column(cell.recording_column), values.begin());
-        ranked.places += Distance(contrast.places, cell.template_column, values);
-      }
-      if (options_.velocities) {
-        PoseVelocity(*recording.poses, cell.recording_column, values);
-        ranked.velocities += Distance(contrast.velocities, cell.template_column, values);
-      }
+      ranked.places += Distance(contrast.places, cell.template_column,
+                                recording.poses->Column(cell.recording_column));
     }
     ranked.places /= static_cast<double>(path.size());
-    ranked.velocities /= static_cast<double>(path.size());
   }
 
   std::span<const Searched> searched_;
@@ -154,7 +159,7 @@ std::vector<std::vector<RankedHit>> RankHits(std::span<const MotionTemplate> tem
     }
   }
   for (std::vector<RankedHit>& of_template : hits) {
-    std::ranges::stable_sort(of_template, {}, [](const RankedHit& each) { return each.hit.cost; });
+    std::ranges::stable_sort(of_template, {}, &RankedHit::score);
     if (of_template.size() > options.most_hits) of_template.resize(options.most_hits);
   }
   return hits;

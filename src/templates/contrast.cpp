@@ -17,15 +17,6 @@ constexpr double kVarianceFloor = 0.05;
 // What consistent entries weigh that are no surprise at all.
 constexpr double kUnsurprising = 0.3;
 
-using PoseValues = std::array<float, kPoseValues>;
-
-// Of one column of a stream: places or velocities.
-using PoseReader = void (*)(const PoseStream& poses, int column, std::span<float> values);
-
-void ReadPlace(const PoseStream& poses, int column, std::span<float> values) {
-  std::ranges::copy(poses.Column(column), values.begin());
-}
-
 // Sums, for means and variances.
 class Moments {
  public:
@@ -36,9 +27,9 @@ class Moments {
     }
     ++count_;
   }
-  void Add(const PoseValues& values) {
+  void Add(std::span<const float> pose) {
     std::array<double, kPoseValues> numbers{};
-    std::ranges::copy(values, numbers.begin());
+    std::ranges::copy(pose, numbers.begin());
     Add(numbers);
   }
 
@@ -58,15 +49,13 @@ class Moments {
   double count_ = 0;
 };
 
-PoseStatistics Measure(std::span<const RecordingStreams> labelled,
-                       std::span<const RecordingStreams> others, PoseReader read) {
+PoseStatistics MeasurePoses(std::span<const RecordingStreams> labelled,
+                            std::span<const RecordingStreams> others) {
   Moments moments;
-  PoseValues values{};
   for (const auto& recordings : {labelled, others}) {
     for (const RecordingStreams& recording : recordings) {
       for (int column = 0; column < recording.poses->column_count(); ++column) {
-        read(*recording.poses, column, values);
-        moments.Add(values);
+        moments.Add(recording.poses->Column(column));
       }
     }
   }
@@ -111,15 +100,14 @@ std::vector<double> WeighEntries(const TemplateMatrix& matrix, std::size_t perfo
 // The mean pose of each performance in each column of the template, by the alignment of features.
 std::vector<Moments> MomentsOfColumns(const MotionTemplate& motion_template,
                                       std::span<const RecordingStreams> performances,
-                                      std::span<const Alignment> alignments, PoseReader read) {
+                                      std::span<const Alignment> alignments) {
   const auto columns = static_cast<std::size_t>(motion_template.matrix.column_count());
   std::vector<Moments> moments(columns);
-  PoseValues values{};
   for (std::size_t i = 0; i < performances.size(); ++i) {
     std::vector<std::array<double, kPoseValues>> sums(columns);
     std::vector<int> counts(columns);
     for (const AlignedColumns& cell : alignments[i].path) {
-      read(*performances[i].poses, cell.other, values);
+      const std::span<const float> values = performances[i].poses->Column(cell.other);
       const auto column = static_cast<std::size_t>(cell.reference);
       for (std::size_t v = 0; v < values.size(); ++v) sums[column][v] += values[v];
       ++counts[column];
@@ -185,8 +173,7 @@ Background MeasureBackground(std::span<const RecordingStreams> labelled,
   }
   // Never 0 or 1: what has not been seen yet may still come.
   for (double& share : background.ones) share = (share + 0.5) / (columns + 1);
-  background.places = Measure(labelled, others, &ReadPlace);
-  background.velocities = Measure(labelled, others, &PoseVelocity);
+  background.places = MeasurePoses(labelled, others);
   return background;
 }
 
@@ -208,13 +195,10 @@ Contrast MeasureContrast(const MotionTemplate& motion_template,
     alignments.push_back(Align(motion_template.matrix, ToTemplateMatrix(*performance.features),
                                motion_template.learning));
   }
-  const auto model = [&](PoseReader read, const PoseStatistics& statistics) {
-    return ModelOf(MomentsOfColumns(motion_template, performances, alignments, read), statistics);
-  };
+  const std::vector<Moments> columns = MomentsOfColumns(motion_template, performances, alignments);
   return {
       .entry_weights = WeighEntries(motion_template.matrix, performances.size(), background.ones),
-      .places = model(&ReadPlace, background.places),
-      .velocities = model(&PoseVelocity, background.velocities)};
+      .places = ModelOf(columns, background.places)};
 }
 
 }  // namespace kinebase

@@ -75,7 +75,6 @@ MotionTemplate MirrorTemplate(const MotionTemplate& motion_template, const Featu
   if (mirrored.contrast) {
     MirrorRows(mirrored.contrast->entry_weights, rows);
     MirrorPoses(mirrored.contrast->places);
-    MirrorPoses(mirrored.contrast->velocities);
   }
   // Twice mirrored is the original again, by name too.
   constexpr std::string_view kMark = " mirrored";

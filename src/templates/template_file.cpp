@@ -273,11 +273,10 @@ PoseModel ReadPoseModel(const ObjectReader& object, int columns) {
 }
 
 Contrast ReadContrast(const ObjectReader& object, const TemplateMatrix& matrix) {
-  object.AllowOnly({"entry_weights", "places", "velocities"});
+  object.AllowOnly({"entry_weights", "places"});
   const int columns = matrix.column_count();
   return {.entry_weights = ReadRows<double>(object, "entry_weights", columns, matrix.feature_count),
-          .places = ReadPoseModel(object.Object("places"), columns),
-          .velocities = ReadPoseModel(object.Object("velocities"), columns)};
+          .places = ReadPoseModel(object.Object("places"), columns)};
 }
 
 Calibration ReadCalibration(const ObjectReader& object) {
@@ -315,8 +314,7 @@ std::string ProblemOf(const Contrast& contrast, const TemplateMatrix& matrix) {
     return "entry weights of another size than the matrix";
   }
   if (!AreWeights(contrast.entry_weights)) return "an entry weight that is not finite or below 0";
-  const std::string places = ProblemOf(contrast.places, matrix.column_count());
-  return places.empty() ? ProblemOf(contrast.velocities, matrix.column_count()) : places;
+  return ProblemOf(contrast.places, matrix.column_count());
 }
 
 std::string ProblemOf(const Calibration& calibration) {
@@ -458,11 +456,10 @@ std::string FormatPoseModel(const PoseModel& model) {
 }
 
 std::string FormatContrast(const Contrast& contrast, const TemplateMatrix& matrix) {
-  return fmt::format(
-      "{{\n    \"entry_weights\": {},\n    \"places\": {},\n    \"velocities\": {}\n  }}",
-      FormatRows(std::span(contrast.entry_weights), static_cast<std::size_t>(matrix.feature_count),
-                 "    "),
-      FormatPoseModel(contrast.places), FormatPoseModel(contrast.velocities));
+  return fmt::format("{{\n    \"entry_weights\": {},\n    \"places\": {}\n  }}",
+                     FormatRows(std::span(contrast.entry_weights),
+                                static_cast<std::size_t>(matrix.feature_count), "    "),
+                     FormatPoseModel(contrast.places));
 }
 
 }  // namespace

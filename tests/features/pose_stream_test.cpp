@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "features/poses.h"
@@ -69,22 +68,6 @@ TEST(PoseStream, PointsTheHipsToX) {
   EXPECT_NEAR(place(StandardJoint::kLhip)[2], 0, 1e-6);
   EXPECT_NEAR(place(StandardJoint::kLhip)[0] / place(StandardJoint::kLhip)[1], 2, 1e-5);
   EXPECT_FLOAT_EQ(place(StandardJoint::kRhip)[0], -place(StandardJoint::kLhip)[0]);
-}
-
-// A value that grows by 3 a second does so in every column, at the ends too.
-TEST(PoseStream, TellsVelocities) {
-  PoseStream poses{.rate_hz = 30};
-  for (int column = 0; column < 8; ++column) {
-    for (int i = 0; i < kPoseValues; ++i) poses.values.push_back(static_cast<float>(column) / 10);
-  }
-  std::array<float, kPoseValues> velocity{};
-  for (int column = 0; column < 8; ++column) {
-    PoseVelocity(poses, column, velocity);
-    for (const float value : velocity) EXPECT_NEAR(value, 3, 1e-4) << column;
-  }
-  poses.values.resize(kPoseValues);
-  PoseVelocity(poses, 0, velocity);
-  for (const float value : velocity) EXPECT_EQ(value, 0);
 }
 
 TEST(PoseStream, NeedsTheStandardJoints) {

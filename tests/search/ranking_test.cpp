@@ -136,8 +136,6 @@ MotionTemplate Template(const std::string& name) {
     }
   }
   contrast.places.spread.assign(kPoseValues, 0.25F);
-  contrast.velocities = contrast.places;
-  std::ranges::fill(contrast.velocities.weight, 0.0F);
   result.contrast = contrast;
   return result;
 }
@@ -178,8 +176,9 @@ TEST(Ranking, LetsTemplatesOfOtherNamesBeRivals) {
   EXPECT_EQ(best({Template("a")}).rival, 0);
   EXPECT_EQ(best({Template("a"), Template("a")}).rival, 0);
   EXPECT_EQ(best({Template("a"), Template("b")}).rival, 0.5);
-  EXPECT_EQ(best({Template("a"), Template("b")}).hit.cost, 0.25);
-  EXPECT_EQ(best({Template("a"), Template("b")}, false).hit.cost, 0);
+  EXPECT_EQ(best({Template("a"), Template("b")}).score, 0.25);
+  EXPECT_EQ(best({Template("a"), Template("b")}).hit.cost, 0);
+  EXPECT_EQ(best({Template("a"), Template("b")}, false).score, 0);
   // One that fits nowhere near is none.
   MotionTemplate elsewhere = Template("b");
   for (double& value : elsewhere.matrix.values) value = value == 1 ? 0 : value;

@@ -58,7 +58,6 @@ Contrast RandomContrast(Random& random, const TemplateMatrix& matrix) {
     contrast.entry_weights.push_back(random.Below(3) == 0 ? 0 : random.Unit());
   }
   contrast.places = RandomPoses(random, matrix.column_count());
-  contrast.velocities = RandomPoses(random, matrix.column_count());
   return contrast;
 }
 
@@ -174,8 +173,8 @@ TEST(TemplateFile, RefusesAContrastThatDoesNotFit) {
            {"/contrast/places/mean/2", 7, "contrast.places.mean[2]"},
            {"/contrast/places/spread", json::array({1}), "72 numbers"},
            {"/contrast/places/spread/3", 0, "where the spread is 0"},
-           {"/contrast/velocities/weight/0/0", "much", "expected a number"},
-           {"/contrast/velocities", 7, "an object"},
+           {"/contrast/places/weight/0/0", "much", "expected a number"},
+           {"/contrast/places", 7, "an object"},
            {"/contrast/places/mode", 7, "unknown field"},
            {"/calibration/slope", "steep", "a number"},
        }) {

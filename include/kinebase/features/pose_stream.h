@@ -34,11 +34,6 @@ struct PoseStream {
 [[nodiscard]] PoseStream ExtractPoses(const JointTrajectories& standard_joints,
                                       double rate_hz = 30);
 
-// How fast each value changes around a column, per second, over 2 · kVelocityReach columns; over
-// what there is at the ends.
-inline constexpr int kVelocityReach = 2;
-void PoseVelocity(const PoseStream& poses, int column, std::span<float> velocity);
-
 // A recording as it is learned from and searched: two streams of the same columns. poses may be
 // null where only features are asked for.
 struct RecordingStreams {

@@ -29,17 +29,14 @@ struct LabelledClip {
 struct Method {
   std::string_view name;  // "mt", "mt+" …
   bool contrast = false;  // Entry weights from a background.
-  bool places = false;    // Hits ranked by poses,
-  bool velocities = false;
-  bool rivals = false;  // and by what other classes' templates say.
+  bool places = false;    // Poses count too,
+  bool rivals = false;    // and hits are ordered by what other classes' templates say as well.
 
-  [[nodiscard]] RankOptions Ranking() const {
-    return {.places = places, .velocities = velocities, .rivals = rivals};
-  }
+  [[nodiscard]] RankOptions Ranking() const { return {.places = places, .rivals = rivals}; }
 };
 
 // "mt", which is the paper's, and "mt+", which is all; the ingredients added one by one:
-// "mt+weights", "mt+places", "mt+velocities".
+// "mt+weights", "mt+places".
 [[nodiscard]] std::span<const Method> RetrievalMethods();
 [[nodiscard]] const Method* FindMethod(std::string_view name);
 

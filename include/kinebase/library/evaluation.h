@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinebase/library/annotation_accuracy.h"
 #include "kinebase/library/class_learning.h"
 
 namespace kinebase {
@@ -56,7 +57,7 @@ struct EvaluationData {
   [[nodiscard]] std::set<std::string> Actors() const;
 };
 
-enum class Protocol { kLeaveOneActorOut, kHalf };
+enum class Protocol { kLeaveOneActorOut, kHalf };  // Of Evaluate.
 
 struct EvaluateOptions {
   Protocol protocol = Protocol::kLeaveOneActorOut;
@@ -144,5 +145,20 @@ struct Evaluation {
 // Cost    A learning and a search for each class, actor and method.
 [[nodiscard]] Evaluation Evaluate(const EvaluationData& data, const FeatureSet& features,
                                   const EvaluateOptions& options);
+
+struct AnnotateEvaluation {
+  std::string_view method;
+  AnnotationAccuracy accuracy;                         // Of all takes together.
+  std::map<std::string, AnnotationAccuracy> by_actor;  // By the actor left out.
+};
+
+// Protocol "annotate": long takes of all clips of the actor who is left out, in seeded random
+// order, with 2 to 10 s of distractors between them; three takes for each half of the distractors,
+// the other half being the library to learn with.
+//
+// Errors  InvalidArgument: fewer than two actors or distractors; Cancelled.
+[[nodiscard]] std::vector<AnnotateEvaluation> EvaluateAnnotation(const EvaluationData& data,
+                                                                 const FeatureSet& features,
+                                                                 const EvaluateOptions& options);
 
 }  // namespace kinebase

@@ -22,6 +22,7 @@ struct TakeHit {
   double start_s = 0;  // From the start of the take to the start of the first frame,
   double end_s = 0;    // and to the end of the last.
   double cost = 0;
+  double score = 0;                  // What hits are ordered by: the cost, and rivals if any.
   std::optional<double> confidence;  // How likely it is right, where the template knows.
 
   friend bool operator==(const TakeHit&, const TakeHit&) = default;
@@ -33,7 +34,7 @@ struct TakeHit {
                                                std::span<const TakeFeatures> takes,
                                                const SearchOptions& options = {});
 
-// RankHits, its columns turned into frames and seconds: for each template its hits, best first,
+// RankHits, its columns turned into frames and seconds: for each template its hits in that order,
 // below its own threshold where options.tau does not say another.
 //
 // takes  With poses.

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,25 +19,27 @@ namespace kinebase {
 
 struct RankOptions {
   // The ingredients beside the template itself; each may be left out.
-  bool places = true;      // How joints lie along the path, against what the class does.
-  bool velocities = true;  // How they move.
-  bool rivals = true;      // What other templates say of the same stretch.
-  double tau = std::numeric_limits<double>::infinity();  // On the score.
-  std::size_t most_hits = 500;                           // Of each template.
-  int threads = 0;                                       // 0 = as many as the hardware has.
+  bool places = true;  // How joints lie along the path, against what the class does.
+  bool rivals = true;  // What other templates say of the same stretch.
+  // On the cost. Empty: each template's own, and no limit where it has none.
+  std::optional<double> tau = std::numeric_limits<double>::infinity();
+  // Every column where a path ends, instead of hits alone: for those who choose among them.
+  bool every_end = false;
+  std::size_t most_hits = 500;  // Of each template.
+  int threads = 0;              // 0 = as many as the hardware has.
   ProgressCallback progress;
 };
 
 struct RankedHit {
-  Hit hit;              // Its cost is the score: what follows, weighed and added.
+  Hit hit;              // Its cost is Δ and places, weighed and added.
   double matching = 0;  // Δ of the template, with its entry weights.
   double places = 0;    // Mean over the path, in units of the background's variance; at most 4.
-  double velocities = 0;
-  double rival =
-      0;  // ½ less Δ of the other template that fits best there; 0 where none comes near.
+  double rival = 0;     // ½ less Δ of the other template that fits best there; 0 where none does.
+  double score = 0;     // The cost and the rival, weighed: what hits are ordered by. Rivals do not
+                        // decide whether it is a hit, as one may search without them.
 };
 
-// For each template its hits, best first. Templates of the same name are no rivals: they stand for
+// For each template its hits, by score. Templates of the same name are no rivals: they stand for
 // one class in several ways. Those without a contrast are ranked by Δ and rivals alone.
 //
 // Errors   Mismatch if a recording has another rate or feature count than a template; Cancelled.

@@ -28,7 +28,6 @@ struct PoseStatistics {
 struct Background {
   std::vector<double> ones;  // [feature] how often it is one, in (0, 1).
   PoseStatistics places;
-  PoseStatistics velocities;
 
   friend bool operator==(const Background&, const Background&) = default;
 };

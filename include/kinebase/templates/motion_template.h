@@ -50,7 +50,7 @@ struct TemplateClip {
   friend bool operator==(const TemplateClip&, const TemplateClip&) = default;
 };
 
-// The poses of a class, column by column: joints' places, or their velocities.
+// The poses of a class, column by column.
 struct PoseModel {
   std::vector<float> mean;    // [column × kPoseValues]
   std::vector<float> weight;  // [column × kPoseValues]; each column sums to 1.
@@ -62,8 +62,7 @@ struct PoseModel {
 // What sets the class off from other motion; templates/contrast.h.
 struct Contrast {
   std::vector<double> entry_weights;  // [column × feature]; each column sums to 1, or is all 0.
-  PoseModel places;
-  PoseModel velocities;
+  PoseModel places;                   // Of the joints.
 
   friend bool operator==(const Contrast&, const Contrast&) = default;
 };
