@@ -155,6 +155,14 @@ void PrintError(std::string_view message) {
              UseColour() ? "\033[0m" : "", OnOneLine(message));
 }
 
+void PrintMarked(std::string_view lines) {
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    fmt::print(stderr, "  {}\n", OnOneLine(lines.substr(0, end)));
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+}
+
 void PrintNote(const CommonOptions& options, std::string_view message) {
   if (options.quiet) return;
   ClearBar();

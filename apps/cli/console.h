@@ -55,6 +55,7 @@ class UsageError : public std::runtime_error {
 void Print(std::string_view text);
 void PrintJson(const Json& json);
 void PrintError(std::string_view message);
+void PrintMarked(std::string_view lines);  // Below an error: a text with marks under a part of it.
 void PrintNote(const CommonOptions& options, std::string_view message);
 void PrintDiagnostics(const CommonOptions& options, const std::filesystem::path& file,
                       const Diagnostics& diagnostics);

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/template_commands.h"
 #include "fmt/format.h"
 #include "kinebase/pictures/template_picture.h"
 #include "kinebase/search/template_search.h"
@@ -40,6 +41,13 @@ std::string ConsistencyText(const MotionTemplate& motion_template) {
                      100 * (consistent - ones) / all, 100 - 100 * consistent / all);
 }
 
+std::string LearningText(const MotionTemplate& motion_template) {
+  if (motion_template.clips.empty() && motion_template.rounds == 0) return "from no clips";
+  return fmt::format("from {} in {}",
+                     FormatCount(std::ssize(motion_template.clips), "clip", "clips"),
+                     FormatCount(motion_template.rounds, "round", "rounds"));
+}
+
 std::string Describe(const MotionTemplate& motion_template) {
   const TemplateMatrix& matrix = motion_template.matrix;
   std::string text = OnOneLine(motion_template.name) + '\n';
@@ -57,9 +65,8 @@ std::string Describe(const MotionTemplate& motion_template) {
   line("threshold", motion_template.tau
                         ? fmt::format("{:g} ({})", *motion_template.tau, motion_template.tau_origin)
                         : fmt::format("none of its own; {:g} is used", kDefaultTau));
-  line("learned",
-       fmt::format("from {} in {}", FormatCount(std::ssize(motion_template.clips), "clip", "clips"),
-                   FormatCount(motion_template.rounds, "round", "rounds")));
+  if (!motion_template.origin.empty()) line("origin", motion_template.origin);
+  line("learned", LearningText(motion_template));
   for (const TemplateClip& clip : motion_template.clips) {
     line("", clip.first_frame == 0
                  ? clip.file
@@ -121,7 +128,8 @@ CLI::App* AddAction(CLI::App& parent, const std::shared_ptr<TemplateOptions>& op
 
 void AddTemplateCommand(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<TemplateOptions>();
-  CLI::App* command = program.add_subcommand("template", "Look at templates and change them");
+  CLI::App* command =
+      program.add_subcommand("template", "Make templates, look at them and change them");
   command->require_subcommand(1);
   command->footer("Example:\n  kinebase template render squat.template.json -o squat.png");
 
@@ -149,6 +157,8 @@ void AddTemplateCommand(CLI::App& program, int& exit_code) {
     AddFeatureSetOption(*action, options->feature_set);
     AddForceOption(*action, options->common);
   }
+  AddTemplateEditingCommands(*command, exit_code);
+  AddTemplateCompileCommand(*command, exit_code);
 }
 
 }  // namespace kinebase::cli

@@ -6,12 +6,14 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <map>
 
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/features/vocabulary.h"
 #include "kinebase/motion/motion.h"
 #include "toml++/toml.h"
 
@@ -93,7 +95,8 @@ class FeatureSetReader {
                   {file_, error.source().begin.line});
     }
     CheckHeader(root);
-    CheckKeys(root, {"format", "version", "name", "description", "rate_hz", "lengths", "feature"});
+    CheckKeys(root, {"format", "version", "name", "description", "rate_hz", "lengths", "feature",
+                     "phrases"});
     set_.name = Text(root, "name");
     set_.description = OptionalText(root, "description", "");
     set_.rate_hz = NumberOr(root, "rate_hz", 120);
@@ -104,6 +107,7 @@ class FeatureSetReader {
     ReadLengths(root);
     ReadFeatures(root);
     LinkMirrors();
+    ReadWords(root);
     set_.hash = Hash();
     return std::move(set_);
   }
@@ -145,6 +149,19 @@ class FeatureSetReader {
     const auto* text = table[key].as_string();
     if (text == nullptr) Fail(*table.get(key), fmt::format("'{}' must be a text", key));
     return text->get();
+  }
+
+  std::vector<std::string> Texts(const toml::table& table, std::string_view key) const {
+    std::vector<std::string> texts;
+    if (!table.contains(key)) return texts;
+    const toml::array* array = table[key].as_array();
+    if (array == nullptr) Fail(*table.get(key), fmt::format("'{}' must be a list of texts", key));
+    for (const toml::node& node : *array) {
+      const auto* text = node.as_string();
+      if (text == nullptr) Fail(node, fmt::format("'{}' must be a list of texts", key));
+      texts.push_back(text->get());
+    }
+    return texts;
   }
 
   bool Flag(const toml::table& table, std::string_view key) const {
@@ -222,11 +239,13 @@ class FeatureSetReader {
   }
 
   void ReadFeature(const toml::table& table) {
-    CheckKeys(table, {"id", "name", "group", "mirror", "test", "strong", "weak", "unit", "combine",
-                      "terms"});
+    CheckKeys(table, {"id", "name", "synonyms", "opposites", "group", "mirror", "test", "strong",
+                      "weak", "unit", "combine", "terms"});
     Feature feature{.id = Text(table, "id"),
                     .name = Text(table, "name"),
-                    .group = OptionalText(table, "group", "")};
+                    .group = OptionalText(table, "group", ""),
+                    .synonyms = Texts(table, "synonyms"),
+                    .opposites = Texts(table, "opposites")};
     if (set_.Find(feature.id)) Fail(table, fmt::format("a second feature '{}'", feature.id));
     feature.test = Choice(table, "test", kTests, "above");
     feature.combination = Choice(table, "combine", kCombinations, "sum");
@@ -365,6 +384,69 @@ class FeatureSetReader {
     }
   }
 
+  // Ids and names first: they are what the other words must not contradict.
+  void ReadWords(const toml::table& root) {
+    for (int i = 0; i < set_.feature_count(); ++i) {
+      const Feature& feature = set_.features[static_cast<std::size_t>(i)];
+      for (const std::string& text : {feature.id, feature.name}) {
+        meanings_.try_emplace(NormalizedPhrase(text), std::vector{FeatureState{i, true}});
+      }
+    }
+    for (int i = 0; i < set_.feature_count(); ++i) {
+      const Feature& feature = set_.features[static_cast<std::size_t>(i)];
+      const std::int64_t line = lines_[static_cast<std::size_t>(i)];
+      for (const std::string& text : feature.synonyms) AddMeaning(text, {{i, true}}, line);
+      for (const std::string& text : feature.opposites) AddMeaning(text, {{i, false}}, line);
+    }
+    ReadPhrases(root);
+  }
+
+  void ReadPhrases(const toml::table& root) {
+    if (!root.contains("phrases")) return;
+    const toml::table* phrases = root["phrases"].as_table();
+    if (phrases == nullptr) Fail(*root.get("phrases"), "[phrases] must be a table");
+    for (const auto& [text, value] : *phrases) {
+      FeaturePhrase phrase{.text = std::string(text.str())};
+      const toml::array* states = value.as_array();
+      if (states == nullptr || states->empty()) {
+        Fail(value, "a phrase is a list of features: [\"F3\", \"not F4\"]");
+      }
+      for (const toml::node& state : *states) phrase.states.push_back(ReadState(state));
+      AddMeaning(phrase.text, phrase.states, value.source().begin.line);
+      set_.phrases.push_back(std::move(phrase));
+    }
+  }
+
+  // "F3" or "not F3".
+  FeatureState ReadState(const toml::node& node) const {
+    constexpr std::string_view kNot = "not ";
+    const std::string text = node.value<std::string>().value_or("");
+    const bool negated = text.starts_with(kNot);
+    const std::string_view id = Trim(std::string_view(text).substr(negated ? kNot.size() : 0));
+    const auto feature = set_.Find(id);
+    if (!feature) {
+      Fail(node,
+           fmt::format("{} is neither the id of a feature nor 'not' and an id", Quoted(text)));
+    }
+    return {*feature, !negated};
+  }
+
+  void AddMeaning(const std::string& text, const std::vector<FeatureState>& states,
+                  std::int64_t line) {
+    const std::string words = NormalizedPhrase(text);
+    if (words.empty()) {
+      throw Error(ErrorCode::kMalformedFile, fmt::format("{} has no words", Quoted(text)),
+                  {file_, line});
+    }
+    const auto [known, is_new] = meanings_.try_emplace(words, states);
+    if (!is_new && known->second != states) {
+      throw Error(
+          ErrorCode::kMalformedFile,
+          fmt::format("{} means two things: choose other words for one of them", Quoted(text)),
+          {file_, line});
+    }
+  }
+
   // FNV-1a over everything that decides a bit, also after mirroring.
   std::uint64_t Hash() const {
     std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -414,8 +496,9 @@ class FeatureSetReader {
 
   const std::filesystem::path& file_;
   FeatureSet set_;
-  std::vector<std::string> mirrors_;  // [feature] id of the partner.
-  std::vector<std::int64_t> lines_;   // [feature]
+  std::vector<std::string> mirrors_;                           // [feature] id of the partner.
+  std::vector<std::int64_t> lines_;                            // [feature]
+  std::map<std::string, std::vector<FeatureState>> meanings_;  // By normalised words.
 };
 
 }  // namespace

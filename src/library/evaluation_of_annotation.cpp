@@ -58,7 +58,8 @@ JudgedRecording Annotate(const LongTake& take, const PoseStream& poses,
   for (const LongTake::Segment& segment : take.truth) {
     judged.truth.push_back({segment.motion_class, segment.first, segment.last});
   }
-  const auto candidates = FindCandidates(templates, classes, {&take.features, &poses}, method.Ranking());
+  const auto candidates =
+      FindCandidates(templates, classes, {&take.features, &poses}, method.Ranking());
   for (const AnnotationCandidate& segment : ChooseSegments(candidates)) {
     judged.found.push_back({segment.motion_class, segment.first, segment.last});
   }
@@ -67,8 +68,7 @@ JudgedRecording Annotate(const LongTake& take, const PoseStream& poses,
 
 // [method][take]
 std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& data,
-                                                        const std::string& actor,
-                                                        std::size_t half,
+                                                        const std::string& actor, std::size_t half,
                                                         const FeatureSet& features,
                                                         const EvaluateOptions& options) {
   const Parts parts = PartsFor(data, actor, half);

@@ -60,6 +60,8 @@ class ObjectReader {
     }
   }
 
+  [[nodiscard]] bool Has(std::string_view key) const { return object_.contains(key); }
+
   [[nodiscard]] std::string String(std::string_view key) const {
     const json& value = At(key);
     if (!value.is_string()) Fail(NameOf(key), value, "a string");
@@ -96,7 +98,6 @@ class ObjectReader {
     return {At(key), NameOf(key), file_};
   }
 
-  [[nodiscard]] bool Has(std::string_view key) const { return object_.contains(key); }
   [[nodiscard]] bool IsNull(std::string_view key) const { return At(key).is_null(); }
 
   [[noreturn]] void FailAt(std::string_view key, std::string_view expected) const {
@@ -324,7 +325,7 @@ std::string ProblemOf(const Calibration& calibration) {
 
 MotionTemplate ReadFields(const ObjectReader& root) {
   root.AllowOnly({"format", "version", "name", "learning", "matching", "feature_set", "clips",
-                  "rounds", "quantisation", "tau", "tau_origin", "matrix", "contrast",
+                  "origin", "rounds", "quantisation", "tau", "tau_origin", "matrix", "contrast",
                   "calibration"});
   MotionTemplate result;
   result.name = root.String("name");
@@ -335,6 +336,7 @@ MotionTemplate ReadFields(const ObjectReader& root) {
   result.feature_set = feature_set.String("name");
   result.feature_set_hash = ReadHash(feature_set);
   result.clips = ReadClips(root);
+  if (root.Has("origin")) result.origin = root.String("origin");
   result.rounds = static_cast<int>(root.Integer("rounds", 0, std::numeric_limits<int>::max()));
   result.quantisation = root.Number("quantisation");
   if (!internal::IsQuantisation(result.quantisation)) {
@@ -492,6 +494,7 @@ std::string FormatTemplate(const MotionTemplate& motion_template) {
       fmt::format("{{\"name\": {}, \"hash\": \"{:016x}\"}}",
                   JsonString(motion_template.feature_set), motion_template.feature_set_hash));
   add("clips", FormatClips(motion_template.clips));
+  if (!motion_template.origin.empty()) add("origin", JsonString(motion_template.origin));
   add("rounds", std::to_string(motion_template.rounds));
   add("quantisation", ToShortestText(motion_template.quantisation));
   add("tau", motion_template.tau ? ToShortestText(*motion_template.tau) : "null");

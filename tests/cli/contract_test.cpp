@@ -259,7 +259,12 @@ TEST(Help, OfEveryCommandShowsAnExample) {
                                              {"template"},
                                              {"template", "show"},
                                              {"template", "render"},
-                                             {"template", "mirror"}}) {
+                                             {"template", "mirror"},
+                                             {"template", "draw"},
+                                             {"template", "edit"},
+                                             {"template", "combine"},
+                                             {"template", "concatenate"},
+                                             {"template", "compile"}}) {
     SCOPED_TRACE(command.back());
     EXPECT_THAT(program.out, HasSubstr("  " + command.front() + "  "));
     std::vector<std::string> arguments = command;

@@ -303,6 +303,57 @@ TEST(FeatureSetHash, IgnoresNamesAndTheWayOfWriting) {
   }
 }
 
+// Words that are added leave templates valid that were learned before.
+TEST(FeatureSetHash, IgnoresTheWordsOfQueries) {
+  std::string text(kSet);
+  text += "[phrases]\n\"hands high\" = [\"R\", \"L\"]\n";
+  const std::size_t at = text.find("group = \"upper\"");
+  text.insert(at, "synonyms = [\"hand up\"]\nopposites = [\"hand down\"]\n");
+  EXPECT_EQ(Parse(text).hash, Parse(kSet).hash);
+}
+
+TEST(FeatureSetWords, AreRead) {
+  const FeatureSet set = Parse(With("mirror = \"L\"",
+                                    "mirror = \"L\"\nsynonyms = [\"rhand up\", \"up\"]\n"
+                                    "opposites = [\"rhand down\"]") +
+                               "[phrases]\n\"one up\" = [\"R\", \"not L\"]\n");
+  EXPECT_THAT(set.features[0].synonyms, ElementsAre("rhand up", "up"));
+  EXPECT_THAT(set.features[0].opposites, ElementsAre("rhand down"));
+  EXPECT_THAT(set.features[1].synonyms, testing::IsEmpty());
+  ASSERT_EQ(set.phrases.size(), 1U);
+  EXPECT_EQ(set.phrases[0].text, "one up");
+  EXPECT_THAT(set.phrases[0].states, ElementsAre(FeatureState{0, true}, FeatureState{1, false}));
+}
+
+TEST(FeatureSetWords, MayNotMeanTwoThings) {
+  const std::string at = "mirror = \"L\"";
+  EXPECT_THAT(ErrorAt(at, "synonyms = [\"up\"]\nopposites = [\"up\"]\n" + at, "[[feature]]"),
+              HasSubstr("'up' means two things"));
+  EXPECT_THAT(ErrorAt(at, "synonyms = [\"The left hand is high\"]\n" + at, "[[feature]]"),
+              HasSubstr("means two things"));
+  EXPECT_THAT(ErrorAt(at, "synonyms = [\"L\"]\n" + at, "[[feature]]"), HasSubstr("'L' means"));
+  EXPECT_THAT(ErrorAt(at, "synonyms = [\"...\"]\n" + at, "[[feature]]"), HasSubstr("no words"));
+  // Saying the same twice is no contradiction.
+  EXPECT_EQ(Parse(With(at, "synonyms = [\"R\", \"Right hand high\"]\n" + at)).feature_count(), 2);
+}
+
+TEST(FeatureSetWords, AreListsOfTextsAndPhrasesOfFeatures) {
+  const std::string at = "mirror = \"L\"";
+  EXPECT_THAT(ErrorAt(at, "synonyms = \"up\"\n" + at, "synonyms"), HasSubstr("list of texts"));
+  EXPECT_THAT(ErrorAt(at, "opposites = [1]\n" + at, "opposites"), HasSubstr("list of texts"));
+  const std::string lengths = "[lengths]";
+  const auto refused = [&](const std::string& phrases, const std::string& part) {
+    return ErrorAt(lengths, phrases + lengths, part);
+  };
+  EXPECT_THAT(refused("phrases = 1\n", "phrases"), HasSubstr("must be a table"));
+  EXPECT_THAT(refused("[phrases]\n\"up\" = \"R\"\n", "\"up\""), HasSubstr("list of features"));
+  EXPECT_THAT(refused("[phrases]\n\"up\" = []\n", "\"up\""), HasSubstr("list of features"));
+  EXPECT_THAT(refused("[phrases]\n\"up\" = [\"no L\"]\n", "\"up\""),
+              HasSubstr("'no L' is neither"));
+  EXPECT_THAT(refused("[phrases]\n\"up\" = [3]\n", "\"up\""), HasSubstr("is neither"));
+  EXPECT_THAT(refused("[phrases]\n\"L\" = [\"R\"]\n", "\"L\" ="), HasSubstr("'L' means two"));
+}
+
 TEST(FeatureSetHash, CoversEverythingThatDecidesABit) {
   const std::uint64_t hash = Parse(kSet).hash;
   for (const auto& [from, to] : std::vector<std::pair<const char*, const char*>>{

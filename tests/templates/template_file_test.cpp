@@ -79,6 +79,7 @@ MotionTemplate RandomTemplate(Random& random) {
     const std::int64_t first = 1 + static_cast<std::int64_t>(random.Word() >> 20U);
     result.clips.push_back({text(), first, first + random.Below(1000)});
   }
+  result.origin = text();
   result.rounds = random.Below(11);
   result.quantisation = random.Unit() / 2;
   if (random.Below(2) == 0) result.tau = random.Unit() * 1e-3;
@@ -116,6 +117,18 @@ TEST(TemplateFile, KeepsExtremeNumbersToTheLastBit) {
   const MotionTemplate read = ParseTemplate(FormatTemplate(original), "a.json");
   EXPECT_EQ(read, original);
   EXPECT_TRUE(std::signbit(read.matrix.values[0]));
+}
+
+TEST(TemplateFile, MayHaveAnOriginAndMayNot) {
+  MotionTemplate drawn = SampleTemplate();
+  drawn.origin = "query: \"lknee bent\"";
+  EXPECT_EQ(ParseTemplate(FormatTemplate(drawn), "a.json"), drawn);
+  json document = json::parse(FormatTemplate(drawn));
+  document["origin"] = 3;
+  EXPECT_THAT(ErrorOf([&] { (void)ParseTemplate(document.dump(), "bad.json"); }).what(),
+              HasSubstr("origin is 3; expected a string"));
+  document.erase("origin");
+  EXPECT_EQ(ParseTemplate(document.dump(), "a.json"), SampleTemplate());
 }
 
 TEST(TemplateFile, WritesAFileAndNeverOverAnotherUnasked) {

@@ -1,6 +1,7 @@
 // A feature set is data: a table of geometric tests, each of them 0 or 1 in every frame.
 //
-// Read features/feature_matrix.h for what comes out and features/feature_extraction.h for how.
+// Read features/feature_matrix.h for what comes out and features/feature_extraction.h for how;
+// features/vocabulary.h finds features by their words.
 // Source: Müller & Röder, "Motion Templates ...", SCA 2006, Appendix A; the built-in sets `bonn`
 // and `paper` are data/feature_sets/*.toml; docs/feature-sets.md shows how to write your own.
 #pragma once
@@ -59,9 +60,11 @@ struct Threshold {
 //
 // Hysteresis: from 0 to 1 where the strong test becomes true, back where the weak test fails.
 struct Feature {
-  std::string id;     // "F1".
-  std::string name;   // "rhand moving forwards".
-  std::string group;  // "upper", "lower", "mix".
+  std::string id;                      // "F1".
+  std::string name;                    // "rhand moving forwards".
+  std::string group;                   // "upper", "lower", "mix".
+  std::vector<std::string> synonyms;   // Other words for its name: "rhand raised".
+  std::vector<std::string> opposites;  // Words for the feature not holding: "rknee straight".
   std::vector<FeatureTerm> terms;
   TermCombination combination = TermCombination::kSum;
   ThresholdTest test = ThresholdTest::kAbove;
@@ -77,12 +80,27 @@ struct BodyLength {
   std::vector<std::pair<StandardJoint, StandardJoint>> segments;
 };
 
+// What is asked of one feature.
+struct FeatureState {
+  int feature = 0;  // Row.
+  bool holds = true;
+
+  friend bool operator==(const FeatureState&, const FeatureState&) = default;
+};
+
+// Words for some features at once: "both knees bent".
+struct FeaturePhrase {
+  std::string text;
+  std::vector<FeatureState> states;  // At least one.
+};
+
 struct FeatureSet {
   std::string name;  // "bonn".
   std::string description;
   double rate_hz = 120;  // Rate at which values are computed; recordings are brought to it.
   std::vector<BodyLength> lengths;
   std::vector<Feature> features;  // 1 … kMaxFeatures.
+  std::vector<FeaturePhrase> phrases;
   std::uint64_t hash = 0;  // Of all that decides values (not of names): equal sets, equal bits.
 
   [[nodiscard]] int feature_count() const { return static_cast<int>(features.size()); }
@@ -92,7 +110,7 @@ struct FeatureSet {
 
 // Errors  MalformedFile with the line: an unknown type, joint, unit or key, a wrong number of
 //         joints, a mirror partner that does not exist or does not answer, more than kMaxFeatures
-//         features.
+//         features, words with two meanings.
 [[nodiscard]] FeatureSet ParseFeatureSet(std::string_view toml, const std::filesystem::path& file);
 
 // "bonn", "paper", or a file. Errors: NotFound, naming the built-in ones; those of ParseFeatureSet.

@@ -85,7 +85,8 @@ struct MotionTemplate {
   std::uint64_t feature_set_hash = 0;  // and what it must hash to.
   TemplateMatrix matrix;
   std::vector<TemplateClip> clips;
-  int rounds = 0;             // Of learning; 0 = not learned.
+  std::string origin;  // How it was made, if not by learning: "query: lknee bent", else empty.
+  int rounds = 0;      // Of learning; 0 = not learned.
   double quantisation = 0.1;  // δ: values ≤ δ count as 0, values ≥ 1 − δ as 1, others as "any".
   std::optional<double> tau;         // Its own threshold on the cost of a hit.
   std::string tau_origin;            // How it was chosen.
