@@ -12,6 +12,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/library/take_search.h"
 #include "kinebase/library/takes.h"
+#include "kinebase/templates/keyframes.h"
 #include "kinebase/templates/quantized_template.h"
 #include "kinebase/templates/template_file.h"
 
@@ -26,6 +27,7 @@ struct SearchCommandOptions {
   std::size_t most_hits = 500;
   bool mirror = false;
   std::filesystem::path curve;
+  std::string keyframes = "none";
   std::string profile;
   std::string feature_set;
   std::string method;  // Empty: as the template knows.
@@ -35,6 +37,23 @@ struct SearchCommandOptions {
 struct Query {
   MotionTemplate motion_template;
   FeatureSet features;
+};
+
+// Recordings with the features of one set at one rate, and where they show what: made when the
+// first template with keyframes asks for it.
+struct SearchedTakes {
+  TakeBatch batch;
+  std::optional<KeyframeIndex> index;
+};
+
+// How much of the recordings was looked at, in columns of all templates.
+struct Coverage {
+  std::int64_t searched = 0;
+  std::int64_t all = 0;
+
+  [[nodiscard]] double share() const {
+    return all == 0 ? 1 : static_cast<double>(searched) / static_cast<double>(all);
+  }
 };
 
 // A hit with the names that people know it by.
@@ -47,9 +66,46 @@ struct NamedHit {
 // The recordings with the features of one set at one rate; templates that agree in both share them.
 using FeatureKey = std::pair<std::uint64_t, double>;
 
+// Those of another template file, made for the same template.
+std::vector<Keyframe> KeyframesOfFile(const std::filesystem::path& path,
+                                      const MotionTemplate& motion_template) {
+  const MotionTemplate source = ReadTemplate(path);
+  if (source.keyframes.empty()) {
+    throw Error(ErrorCode::kNotFound, "holds no keyframes; kinebase template keyframes makes some",
+                {path});
+  }
+  if (source.feature_set_hash != motion_template.feature_set_hash ||
+      source.matrix.column_count() != motion_template.matrix.column_count()) {
+    throw Error(ErrorCode::kMismatch,
+                fmt::format("has keyframes of another template than '{}': columns or feature set "
+                            "differ",
+                            motion_template.name),
+                {path});
+  }
+  return source.keyframes;
+}
+
+// Puts the keyframes to search with into the template, whatever its file holds.
+void SetKeyframes(Query& query, const SearchCommandOptions& options) {
+  std::vector<Keyframe>& keyframes = query.motion_template.keyframes;
+  if (options.keyframes == "none") {
+    keyframes.clear();
+  } else if (options.keyframes != "auto") {
+    keyframes = KeyframesOfFile(options.keyframes, query.motion_template);
+  } else if (keyframes.empty()) {
+    keyframes = ChooseKeyframes(query.motion_template, query.features);
+    if (!keyframes.empty()) return;
+    PrintNote(
+        options.common,
+        fmt::format("no moment of {} is telling enough for a keyframe: everything is searched",
+                    OnOneLine(query.motion_template.name)));
+  }
+}
+
 Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& options) {
   Query query{.motion_template = ReadTemplate(path)};
   query.features = FeatureSetOfTemplate(path, query.motion_template, options.feature_set);
+  SetKeyframes(query, options);
   if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);
   if (const auto profile = ParseProfile(options.profile)) query.motion_template.matching = *profile;
   if (options.method == "mt" && query.motion_template.contrast) {
@@ -65,17 +121,35 @@ Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& o
   return query;
 }
 
-std::vector<NamedHit> SearchOne(const Query& query, const TakeBatch& batch,
+std::vector<TakeHit> SearchIn(const Query& query, SearchedTakes& takes, const SearchOptions& search,
+                              Coverage& coverage) {
+  const MotionTemplate& motion_template = query.motion_template;
+  const std::vector<TakeFeatures>& all = takes.batch.takes;
+  std::int64_t columns = 0;
+  for (const TakeFeatures& take : all) columns += take.features.column_count();
+  coverage.all += columns;
+  if (motion_template.keyframes.empty()) {
+    coverage.searched += columns;
+    return SearchTakes(Quantize(motion_template), all, search);
+  }
+  if (!takes.index) takes.index = IndexTakes(all, query.features);
+  const std::vector<Stretch> stretches =
+      takes.index->Preselect(motion_template.keyframes, motion_template.matrix.column_count());
+  coverage.searched += CountColumns(stretches);
+  return SearchTakes(Quantize(motion_template), all, stretches, search);
+}
+
+std::vector<NamedHit> SearchOne(const Query& query, SearchedTakes& takes,
                                 const SearchCommandOptions& options,
-                                const ProgressCallback& progress) {
+                                const ProgressCallback& progress, Coverage& coverage) {
   const SearchOptions search{
       .tau = options.tau.value_or(query.motion_template.tau.value_or(kDefaultTau)),
       .most_hits = options.most_hits,
       .threads = options.common.threads,
       .progress = progress};
   std::vector<NamedHit> hits;
-  for (const TakeHit& hit : SearchTakes(Quantize(query.motion_template), batch.takes, search)) {
-    hits.push_back({query.motion_template.name, batch.takes[hit.take].path, hit});
+  for (const TakeHit& hit : SearchIn(query, takes, search, coverage)) {
+    hits.push_back({query.motion_template.name, takes.batch.takes[hit.take].path, hit});
   }
   return hits;
 }
@@ -170,8 +244,9 @@ int Run(const SearchCommandOptions& options) {
   for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
 
   const ProgressCallback progress = MakeProgress(options.common);
-  std::map<FeatureKey, TakeBatch> batches;
+  std::map<FeatureKey, SearchedTakes> batches;
   std::map<FeatureKey, std::vector<MotionTemplate>> together;
+  Coverage coverage;
   std::vector<NamedHit> hits;
   const auto append = [&hits](std::vector<NamedHit> found) {
     hits.insert(hits.end(), std::make_move_iterator(found.begin()),
@@ -183,24 +258,24 @@ int Run(const SearchCommandOptions& options) {
     const double rate_hz = query.motion_template.matrix.rate_hz;
     const FeatureKey key = {query.features.hash, rate_hz};
     const auto [entry, is_new] = batches.try_emplace(key);
-    TakeBatch& batch = entry->second;
+    SearchedTakes& takes = entry->second;
     if (is_new) {
-      batch = LoadManyTakeFeatures(stretches, query.features, rate_hz, options.common.load,
-                                   options.common.threads, progress, with_poses);
+      takes.batch = LoadManyTakeFeatures(stretches, query.features, rate_hz, options.common.load,
+                                         options.common.threads, progress, with_poses);
     }
     if (query.motion_template.contrast) {
       together[key].push_back(query.motion_template);
     } else {
-      append(SearchOne(query, batch, options, progress));
+      append(SearchOne(query, takes, options, progress, coverage));
     }
   }
   for (const auto& [key, templates] : together) {
-    append(SearchTogether(templates, batches.at(key), options, progress));
+    append(SearchTogether(templates, batches.at(key).batch, options, progress));
   }
   std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.score; });
   if (hits.size() > options.most_hits) hits.resize(options.most_hits);
 
-  const TakeBatch& batch = batches.begin()->second;  // All read the same files.
+  const TakeBatch& batch = batches.begin()->second.batch;  // All read the same files.
   for (const auto& failure : batch.failures) PrintError(failure.error.what());
   if (batch.takes.empty()) return kCouldNot;
   std::int64_t frames = 0;
@@ -212,7 +287,9 @@ int Run(const SearchCommandOptions& options) {
     WriteFile(options.curve, CurveTable(queries.front(), batch), options.common.overwrite());
   }
   if (options.common.json) {
-    PrintJson(ToJson(hits, batch.failures, frames, watch.seconds()));
+    Json json = ToJson(hits, batch.failures, frames, watch.seconds());
+    if (options.keyframes != "none") json["searched_share"] = coverage.share();
+    PrintJson(json);
   } else {
     if (!hits.empty()) Print(ToText(hits, queries.size() > 1));
     PrintNote(
@@ -220,6 +297,13 @@ int Run(const SearchCommandOptions& options) {
         fmt::format("{} in {} frames of {}, {:.2f} s", FormatCount(std::ssize(hits), "hit", "hits"),
                     frames, FormatCount(std::ssize(batch.takes), "recording", "recordings"),
                     watch.seconds()));
+    if (coverage.searched < coverage.all) {
+      PrintNote(
+          options.common,
+          fmt::format("keyframes left {:.1f} % of the columns to search; motion that does not "
+                      "show them is missed (--keyframes none searches everything)",
+                      100 * coverage.share()));
+    }
   }
   return batch.failures.empty() ? kDone : kPartFailed;
 }
@@ -245,6 +329,12 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
       ->type_name("N");
   command->add_flag("--mirror", options->mirror,
                     "Look for the motion with left and right exchanged");
+  command
+      ->add_option("--keyframes", options->keyframes,
+                   "Search only where keyframes are shown, which may miss hits: auto (the "
+                   "template's own, else chosen), or those of another template file")
+      ->capture_default_str()
+      ->type_name("none|auto|FILE");
   command
       ->add_option("--curve", options->curve,
                    "Also write the cost of the best match that ends at each column (CSV)")

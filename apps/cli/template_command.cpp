@@ -66,6 +66,10 @@ std::string Describe(const MotionTemplate& motion_template) {
                         ? fmt::format("{:g} ({})", *motion_template.tau, motion_template.tau_origin)
                         : fmt::format("none of its own; {:g} is used", kDefaultTau));
   if (!motion_template.origin.empty()) line("origin", motion_template.origin);
+  if (!motion_template.keyframes.empty()) {
+    line("keyframes", fmt::format("{} (kinebase template keyframes lists them)",
+                                  motion_template.keyframes.size()));
+  }
   line("learned", LearningText(motion_template));
   for (const TemplateClip& clip : motion_template.clips) {
     line("", clip.first_frame == 0
@@ -159,6 +163,7 @@ void AddTemplateCommand(CLI::App& program, int& exit_code) {
   }
   AddTemplateEditingCommands(*command, exit_code);
   AddTemplateCompileCommand(*command, exit_code);
+  AddTemplateKeyframesCommand(*command, exit_code);
 }
 
 }  // namespace kinebase::cli

@@ -509,6 +509,18 @@ std::optional<int> FeatureSet::Find(std::string_view id) const {
   return static_cast<int>(found - features.begin());
 }
 
+std::vector<FeatureGroup> FeatureSet::Groups() const {
+  std::vector<FeatureGroup> groups;
+  for (std::size_t row = 0; row < features.size(); ++row) {
+    auto group = std::ranges::find(groups, features[row].group, &FeatureGroup::name);
+    if (group == groups.end()) {
+      group = groups.insert(group, {.name = features[row].group, .features = 0});
+    }
+    group->features |= std::uint64_t{1} << row;
+  }
+  return groups;
+}
+
 std::vector<int> FeatureSet::MirrorRows() const {
   std::vector<int> rows;
   rows.reserve(features.size());

@@ -275,6 +275,7 @@ class Evaluator {
     std::vector<Scores> means;
     for (ClassResult& each : result.classes) {
       std::vector<Scores> scores;
+      scores.reserve(each.by_actor.size());
       for (const auto& [actor, of_actor] : each.by_actor) scores.push_back(of_actor);
       each.mean = MeanOf(scores);
       if (!scores.empty()) means.push_back(each.mean);

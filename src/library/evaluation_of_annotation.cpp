@@ -81,6 +81,7 @@ std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& da
       GatherEvidence(parts.train, learned, features, options.methods, learning);
   const std::set<std::string> names = data.ClassNames();
   std::vector<int> classes;
+  classes.reserve(learned.size());
   for (const MotionTemplate& each : learned) classes.push_back(NumberOf(names, each.name));
   std::vector<std::vector<JudgedRecording>> judged(options.methods.size());
   for (std::size_t m = 0; m < options.methods.size(); ++m) {

@@ -6,19 +6,42 @@
 #include "library/take_frames.h"
 
 namespace kinebase {
+namespace {
+
+// A word a column: little beside the scan itself.
+std::vector<FeatureMatrix> FeaturesOf(std::span<const TakeFeatures> takes) {
+  std::vector<FeatureMatrix> recordings;
+  recordings.reserve(takes.size());
+  for (const TakeFeatures& take : takes) recordings.push_back(take.features);
+  return recordings;
+}
+
+std::vector<TakeHit> ToTakeHits(std::span<const Hit> hits, std::span<const TakeFeatures> takes) {
+  std::vector<TakeHit> take_hits;
+  take_hits.reserve(hits.size());
+  for (const Hit& hit : hits) {
+    const auto index = static_cast<std::size_t>(hit.recording);
+    take_hits.push_back(internal::ToTakeHit(hit, takes[index], index));
+  }
+  return take_hits;
+}
+
+}  // namespace
 
 std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
                                  std::span<const TakeFeatures> takes,
                                  const SearchOptions& options) {
-  std::vector<FeatureMatrix> recordings;  // A word a column: little beside the scan itself.
-  recordings.reserve(takes.size());
-  for (const TakeFeatures& take : takes) recordings.push_back(take.features);
-  std::vector<TakeHit> hits;
-  for (const Hit& hit : SearchTemplate(motion_template, recordings, options)) {
-    const auto index = static_cast<std::size_t>(hit.recording);
-    hits.push_back(internal::ToTakeHit(hit, takes[index], index));
-  }
-  return hits;
+  return ToTakeHits(SearchTemplate(motion_template, FeaturesOf(takes), options), takes);
+}
+
+std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
+                                 std::span<const TakeFeatures> takes,
+                                 std::span<const Stretch> stretches, const SearchOptions& options) {
+  return ToTakeHits(SearchTemplate(motion_template, FeaturesOf(takes), stretches, options), takes);
+}
+
+KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes, const FeatureSet& features) {
+  return KeyframeIndex(FeaturesOf(takes), features.Groups());
 }
 
 std::vector<std::vector<TakeHit>> RankTakes(std::span<const MotionTemplate> templates,

@@ -5,6 +5,7 @@
 #include "kinebase/core/parallel.h"
 #include "search/hit_extraction.h"
 #include "search/kernels/scan_plan.h"
+#include "search/search_checks.h"
 
 namespace kinebase {
 namespace {
@@ -15,9 +16,10 @@ using internal::Candidate;
 // twice, two columns for each template column, is then 1 in 300 for a template of three seconds.
 constexpr std::size_t kColumnsOfAPiece = std::size_t{1} << 16;
 
+// Some columns of a stretch, in which paths may begin to their left.
 struct Piece {
-  int recording = 0;
-  std::size_t begin = 0;
+  Stretch stretch;
+  std::size_t begin = 0;  // From the stretch's first column.
   std::size_t end = 0;
 };
 
@@ -40,12 +42,38 @@ void CheckRecordings(const QuantizedTemplate& motion_template,
   }
 }
 
-std::vector<Piece> CutIntoPieces(std::span<const FeatureMatrix> recordings) {
-  std::vector<Piece> pieces;
+void CheckStretches(std::span<const Stretch> stretches, std::span<const FeatureMatrix> recordings) {
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const Stretch& stretch = stretches[i];
+    const bool exists = stretch.recording >= 0 && stretch.recording < std::ssize(recordings) &&
+                        stretch.first >= 0 && stretch.first <= stretch.last &&
+                        stretch.last < recordings[stretch.recording].column_count();
+    const bool follows =
+        i == 0 || stretches[i - 1].recording < stretch.recording ||
+        (stretches[i - 1].recording == stretch.recording && stretches[i - 1].last < stretch.first);
+    if (exists && follows) continue;
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("stretch {}, columns {} to {} of recording {}: expected stretches of "
+                            "recordings in their order, without overlaps",
+                            i + 1, stretch.first, stretch.last, stretch.recording + 1));
+  }
+}
+
+std::vector<Stretch> WholeRecordings(std::span<const FeatureMatrix> recordings) {
+  std::vector<Stretch> stretches;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const std::size_t columns = recordings[i].columns.size();
+    const int columns = recordings[i].column_count();
+    if (columns > 0) stretches.push_back({static_cast<int>(i), 0, columns - 1});
+  }
+  return stretches;
+}
+
+std::vector<Piece> CutIntoPieces(std::span<const Stretch> stretches) {
+  std::vector<Piece> pieces;
+  for (const Stretch& stretch : stretches) {
+    const auto columns = static_cast<std::size_t>(stretch.last - stretch.first) + 1;
     for (std::size_t begin = 0; begin < columns; begin += kColumnsOfAPiece) {
-      pieces.push_back({static_cast<int>(i), begin, std::min(columns, begin + kColumnsOfAPiece)});
+      pieces.push_back({stretch, begin, std::min(columns, begin + kColumnsOfAPiece)});
     }
   }
   return pieces;
@@ -53,37 +81,39 @@ std::vector<Piece> CutIntoPieces(std::span<const FeatureMatrix> recordings) {
 
 std::vector<Candidate> ScanPiece(const internal::ScanPlan& plan, const FeatureMatrix& recording,
                                  const Piece& piece, double tau) {
+  const Stretch& stretch = piece.stretch;
+  const auto columns = std::span(recording.columns)
+                           .subspan(static_cast<std::size_t>(stretch.first),
+                                    static_cast<std::size_t>(stretch.last - stretch.first) + 1);
   std::vector<double> delta(piece.end - piece.begin);
   std::vector<std::int32_t> start(delta.size());
-  internal::ScanRange(plan, recording.columns, piece.begin, piece.end, delta.data(), start.data());
+  internal::ScanRange(plan, columns, piece.begin, piece.end, delta.data(), start.data());
   std::vector<Candidate> candidates;
   internal::AppendCandidates(delta, start, tau, piece.begin, candidates);
+  for (Candidate& candidate : candidates) {
+    candidate.column += stretch.first;
+    candidate.start += stretch.first;
+  }
   return candidates;
 }
 
-}  // namespace
-
-std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
-                                std::span<const FeatureMatrix> recordings,
-                                const SearchOptions& options) {
-  if (!(options.tau >= 0)) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("threshold tau {}; expected 0 or more", options.tau));
-  }
-  CheckRecordings(motion_template, recordings);
+// stretches  Checked.
+std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
+                                 std::span<const FeatureMatrix> recordings,
+                                 std::span<const Stretch> stretches, const SearchOptions& options) {
   const internal::ScanPlan plan(motion_template);
-  const std::vector<Piece> pieces = CutIntoPieces(recordings);
+  const std::vector<Piece> pieces = CutIntoPieces(stretches);
   std::vector<std::vector<Candidate>> candidates(pieces.size());
   ParallelFor(pieces.size(), options.threads, "searching", options.progress, [&](std::size_t i) {
     const Piece& piece = pieces[i];
-    candidates[i] = ScanPiece(plan, recordings[piece.recording], piece, options.tau);
+    candidates[i] = ScanPiece(plan, recordings[piece.stretch.recording], piece, options.tau);
   });
 
   std::vector<Hit> hits;
   for (std::size_t i = 0; i < pieces.size();) {
-    const int recording = pieces[i].recording;
+    const int recording = pieces[i].stretch.recording;
     std::vector<Candidate> all;
-    for (; i < pieces.size() && pieces[i].recording == recording; ++i) {
+    for (; i < pieces.size() && pieces[i].stretch.recording == recording; ++i) {
       all.insert(all.end(), candidates[i].begin(), candidates[i].end());
     }
     const std::vector<Hit> found =
@@ -91,6 +121,25 @@ std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
     hits.insert(hits.end(), found.begin(), found.end());
   }
   return BestHits(std::move(hits), options.most_hits);
+}
+
+}  // namespace
+
+std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                std::span<const FeatureMatrix> recordings,
+                                const SearchOptions& options) {
+  internal::CheckTau(options.tau);
+  CheckRecordings(motion_template, recordings);
+  return SearchStretches(motion_template, recordings, WholeRecordings(recordings), options);
+}
+
+std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                std::span<const FeatureMatrix> recordings,
+                                std::span<const Stretch> stretches, const SearchOptions& options) {
+  internal::CheckTau(options.tau);
+  CheckRecordings(motion_template, recordings);
+  CheckStretches(stretches, recordings);
+  return SearchStretches(motion_template, recordings, stretches, options);
 }
 
 }  // namespace kinebase

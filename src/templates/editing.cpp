@@ -71,13 +71,14 @@ void CheckTogether(std::span<const MotionTemplate> templates) {
   }
 }
 
-// A template that asks for something else than it did has no threshold of its own, and what set the
-// class off was measured for other columns.
+// A template that asks for something else than it did has no threshold of its own; what set the
+// class off was measured, and keyframes were chosen, for other columns.
 void DropThreshold(MotionTemplate& motion_template) {
   motion_template.tau.reset();
   motion_template.tau_origin.clear();
   motion_template.calibration.reset();
   motion_template.contrast.reset();
+  motion_template.keyframes.clear();
 }
 
 void NoteChange(MotionTemplate& motion_template, const std::string& change) {

@@ -65,6 +65,14 @@ void MirrorPoses(PoseModel& model) {
   for (std::size_t x = 0; x < model.mean.size(); x += 3) model.mean[x] = -model.mean[x];
 }
 
+std::uint64_t MirrorBits(std::uint64_t bits, const std::vector<int>& rows) {
+  std::uint64_t mirrored = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    mirrored |= ((bits >> rows[row]) & 1U) << row;
+  }
+  return mirrored;
+}
+
 }  // namespace
 
 MotionTemplate MirrorTemplate(const MotionTemplate& motion_template, const FeatureSet& features) {
@@ -75,6 +83,10 @@ MotionTemplate MirrorTemplate(const MotionTemplate& motion_template, const Featu
   if (mirrored.contrast) {
     MirrorRows(mirrored.contrast->entry_weights, rows);
     MirrorPoses(mirrored.contrast->places);
+  }
+  for (Keyframe& keyframe : mirrored.keyframes) {
+    keyframe.tested = MirrorBits(keyframe.tested, rows);
+    keyframe.ones = MirrorBits(keyframe.ones, rows);
   }
   // Twice mirrored is the original again, by name too.
   constexpr std::string_view kMark = " mirrored";

@@ -14,6 +14,7 @@
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/features/pose_stream.h"
+#include "kinebase/templates/keyframes.h"
 #include "nlohmann/json.hpp"
 #include "templates/matrix_check.h"
 
@@ -23,9 +24,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kFormat = "kinebase-template";
+// Written is the first version that can hold what a template has, so that programs of its time can
+// read it: 2 brought keyframes, contrasts and calibrations.
 constexpr int kVersion = 2;
-// Of plain templates, which programs that know no contrast read as well.
-constexpr int kPlainVersion = 1;
 
 // A value for a message, not longer than a line can bear.
 std::string ShownValue(const json& value) {
@@ -140,7 +141,8 @@ json ParseJson(std::string_view text, const std::filesystem::path& file) {
   }
 }
 
-void CheckHeader(const ObjectReader& root) {
+// The version.
+std::int64_t ReadHeader(const ObjectReader& root) {
   if (root.String("format") != kFormat) {
     root.FailAt("format", fmt::format("\"{}\"; this is no template file", kFormat));
   }
@@ -152,6 +154,7 @@ void CheckHeader(const ObjectReader& root) {
                             version, kVersion),
                 {.file = root.file()});
   }
+  return version;
 }
 
 Profile ReadProfile(const ObjectReader& root, std::string_view key) {
@@ -234,6 +237,48 @@ TemplateMatrix ReadMatrix(const ObjectReader& root) {
     ObjectReader::FailWith("matrix has " + problem, root.file());
   }
   return matrix;
+}
+
+// Features as people count them, from 1; as bits.
+std::uint64_t ReadFeatures(const ObjectReader& object, std::string_view key) {
+  std::uint64_t bits = 0;
+  for (const json& element : object.Array(key)) {
+    const bool is_row = element.is_number_unsigned() && element.get<std::uint64_t>() >= 1 &&
+                        element.get<std::uint64_t>() <= kMaxFeatures;
+    if (!is_row) {
+      ObjectReader::FailWith(fmt::format("{} has {}; expected features from 1 to {}",
+                                         object.NameOf(key), ShownValue(element), kMaxFeatures),
+                             object.file());
+    }
+    bits |= std::uint64_t{1} << (element.get<std::uint64_t>() - 1);
+  }
+  return bits;
+}
+
+Keyframe ReadKeyframe(const ObjectReader& object) {
+  object.AllowOnly({"column", "ones", "zeros", "misses", "stiffness"});
+  Keyframe keyframe;
+  constexpr int kMost = std::numeric_limits<int>::max();
+  keyframe.column = static_cast<int>(object.Integer("column", 0, kMost));
+  keyframe.ones = ReadFeatures(object, "ones");
+  const std::uint64_t zeros = ReadFeatures(object, "zeros");
+  if ((keyframe.ones & zeros) != 0) object.FailAt("zeros", "features that are not in ones too");
+  keyframe.tested = keyframe.ones | zeros;
+  keyframe.misses = static_cast<int>(object.Integer("misses", 0, kMaxFeatures));
+  if (!object.IsNull("stiffness")) keyframe.stiffness = object.Number("stiffness");
+  return keyframe;
+}
+
+std::vector<Keyframe> ReadKeyframes(const ObjectReader& root, const TemplateMatrix& matrix) {
+  std::vector<Keyframe> keyframes;
+  for (const json& element : root.Array("keyframes")) {
+    keyframes.push_back(
+        ReadKeyframe({element, fmt::format("keyframes[{}]", keyframes.size()), root.file()}));
+  }
+  const std::string problem =
+      ProblemOfKeyframes(keyframes, matrix.column_count(), matrix.feature_count);
+  if (!problem.empty()) ObjectReader::FailWith(problem, root.file());
+  return keyframes;
 }
 
 bool IsThreshold(double tau) { return std::isfinite(tau) && tau >= 0; }
@@ -323,10 +368,10 @@ std::string ProblemOf(const Calibration& calibration) {
   return is_fine ? "" : "a calibration that is not finite";
 }
 
-MotionTemplate ReadFields(const ObjectReader& root) {
+MotionTemplate ReadFields(const ObjectReader& root, std::int64_t version) {
   root.AllowOnly({"format", "version", "name", "learning", "matching", "feature_set", "clips",
-                  "origin", "rounds", "quantisation", "tau", "tau_origin", "matrix", "contrast",
-                  "calibration"});
+                  "origin", "rounds", "quantisation", "tau", "tau_origin", "keyframes", "matrix",
+                  "contrast", "calibration"});
   MotionTemplate result;
   result.name = root.String("name");
   result.learning = ReadProfile(root, "learning");
@@ -356,6 +401,14 @@ MotionTemplate ReadFields(const ObjectReader& root) {
   if (root.Has("calibration")) {
     result.calibration = ReadCalibration(root.Object("calibration"));
   }
+  if (root.Has("keyframes")) {
+    if (version < kVersion) {
+      ObjectReader::FailWith(
+          fmt::format("keyframes in a file of version {}; they came with {}", version, kVersion),
+          root.file());
+    }
+    result.keyframes = ReadKeyframes(root, result.matrix);
+  }
   return result;
 }
 
@@ -378,6 +431,10 @@ void CheckWritten(const MotionTemplate& motion_template) {
   if (motion_template.rounds < 0) {
     problem = fmt::format("{} rounds; expected at least 0", motion_template.rounds);
   }
+  const std::string keyframes =
+      ProblemOfKeyframes(motion_template.keyframes, motion_template.matrix.column_count(),
+                         motion_template.matrix.feature_count);
+  if (!keyframes.empty()) problem = keyframes;
   for (const TemplateClip& clip : motion_template.clips) {
     const bool whole = clip.first_frame == 0 && clip.last_frame == 0;
     if (!whole && (clip.first_frame < 1 || clip.last_frame < clip.first_frame)) {
@@ -422,6 +479,28 @@ std::string FormatClips(const std::vector<TemplateClip>& clips) {
                        clips[i].last_frame);
   }
   return out + (clips.empty() ? "]" : "\n  ]");
+}
+
+std::string FormatFeatures(std::uint64_t bits) {
+  std::string out;
+  for (int row = 0; row < kMaxFeatures; ++row) {
+    if (((bits >> row) & 1U) != 0) out += fmt::format("{}{}", out.empty() ? "" : ", ", row + 1);
+  }
+  return '[' + out + ']';
+}
+
+std::string FormatKeyframes(const std::vector<Keyframe>& keyframes) {
+  std::string out = "[";
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const Keyframe& keyframe = keyframes[i];
+    out += fmt::format(
+        "{}\n    {{\"column\": {}, \"ones\": {}, \"zeros\": {}, \"misses\": {}, "
+        "\"stiffness\": {}}}",
+        i > 0 ? "," : "", keyframe.column, FormatFeatures(keyframe.ones),
+        FormatFeatures(keyframe.tested & ~keyframe.ones), keyframe.misses,
+        keyframe.stiffness ? ToShortestText(*keyframe.stiffness) : "null");
+  }
+  return out + "\n  ]";
 }
 
 // One column a line, so that two templates can be compared by eye and by diff.
@@ -469,8 +548,7 @@ std::string FormatContrast(const Contrast& contrast, const TemplateMatrix& matri
 MotionTemplate ParseTemplate(std::string_view json_text, const std::filesystem::path& file) {
   const json document = ParseJson(json_text, file);
   const ObjectReader root(document, "", file);
-  CheckHeader(root);
-  return ReadFields(root);
+  return ReadFields(root, ReadHeader(root));
 }
 
 MotionTemplate ReadTemplate(const std::filesystem::path& path) {
@@ -485,8 +563,9 @@ std::string FormatTemplate(const MotionTemplate& motion_template) {
     out += fmt::format("{}  \"{}\": {}", out.size() > 2 ? ",\n" : "", key, value);
   };
   add("format", fmt::format("\"{}\"", kFormat));
-  const bool is_plain = !motion_template.contrast && !motion_template.calibration;
-  add("version", std::to_string(is_plain ? kPlainVersion : kVersion));
+  const bool is_plain = !motion_template.contrast && !motion_template.calibration &&
+                        motion_template.keyframes.empty();
+  add("version", std::to_string(is_plain ? 1 : kVersion));
   add("name", JsonString(motion_template.name));
   add("learning", fmt::format("\"{}\"", ToString(motion_template.learning)));
   add("matching", fmt::format("\"{}\"", ToString(motion_template.matching)));
@@ -499,6 +578,8 @@ std::string FormatTemplate(const MotionTemplate& motion_template) {
   add("quantisation", ToShortestText(motion_template.quantisation));
   add("tau", motion_template.tau ? ToShortestText(*motion_template.tau) : "null");
   add("tau_origin", JsonString(motion_template.tau_origin));
+  if (!motion_template.keyframes.empty())
+    add("keyframes", FormatKeyframes(motion_template.keyframes));
   add("matrix", FormatMatrix(motion_template.matrix));
   if (motion_template.contrast) {
     add("contrast", FormatContrast(*motion_template.contrast, motion_template.matrix));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -20,8 +21,9 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-std::filesystem::path SamplePath() {
-  return std::filesystem::path(KINEBASE_SOURCE_DIR) / "tests/templates/samples/version_1.json";
+std::filesystem::path SamplePath(int version = 1) {
+  return std::filesystem::path(KINEBASE_SOURCE_DIR) / "tests/templates/samples" /
+         ("version_" + std::to_string(version) + ".json");
 }
 
 MotionTemplate SampleTemplate() {
@@ -61,6 +63,23 @@ Contrast RandomContrast(Random& random, const TemplateMatrix& matrix) {
   return contrast;
 }
 
+// The same with keyframes; they came with version 2.
+MotionTemplate SampleWithKeyframes() {
+  MotionTemplate result = SampleTemplate();
+  result.keyframes = {{.column = 1, .tested = 0b110, .ones = 0b110, .misses = 1},
+                      {.column = 2, .tested = 0b011, .ones = 0b001, .stiffness = 0.25}};
+  return result;
+}
+
+Keyframe RandomKeyframe(Random& random, const MotionTemplate& motion_template, int column) {
+  Keyframe keyframe{.column = column, .tested = 1};
+  keyframe.tested |= random.Word() >> (64 - motion_template.matrix.feature_count);
+  keyframe.ones = keyframe.tested & random.Word();
+  keyframe.misses = random.Below(std::popcount(keyframe.tested));
+  if (random.Below(2) == 0) keyframe.stiffness = random.Unit();
+  return keyframe;
+}
+
 MotionTemplate RandomTemplate(Random& random) {
   const auto text = [&] {
     const char* const pieces[] = {"a", "\"", "\\", "\n", "ü", "/", "\x01", "走", " "};
@@ -88,10 +107,22 @@ MotionTemplate RandomTemplate(Random& random) {
   result.matrix.rate_hz = 120 * random.Unit() + 1e-9;
   if (random.Below(2) == 0) result.contrast = RandomContrast(random, result.matrix);
   if (random.Below(2) == 0) result.calibration = Calibration{random.Unit(), -random.Unit()};
+  for (int column = 0; column < result.matrix.column_count(); ++column) {
+    if (random.Below(4) == 0) result.keyframes.push_back(RandomKeyframe(random, result, column));
+  }
   return result;
 }
 
 TEST(TemplateFile, OpensVersionOne) { EXPECT_EQ(ReadTemplate(SamplePath()), SampleTemplate()); }
+
+TEST(TemplateFile, OpensVersionTwo) {
+  EXPECT_EQ(ReadTemplate(SamplePath(2)), SampleWithKeyframes());
+}
+
+TEST(TemplateFile, IsWrittenInTheFirstVersionThatCanHoldIt) {
+  EXPECT_EQ(json::parse(FormatTemplate(SampleTemplate()))["version"], 1);
+  EXPECT_EQ(FormatTemplate(SampleWithKeyframes()), ReadText(SamplePath(2)));
+}
 
 TEST(TemplateFile, IsWrittenAsTheDocumentationShowsIt) {
   EXPECT_EQ(FormatTemplate(SampleTemplate()), ReadText(SamplePath()));
@@ -254,6 +285,12 @@ TEST(TemplateFile, NamesFieldsThatItDoesNotKnow) {
   }
 }
 
+TEST(TemplateFile, RefusesKeyframesInAVersionThatHadNone) {
+  json document = json::parse(FormatTemplate(SampleWithKeyframes()));
+  document["version"] = 1;
+  ExpectMalformed(document, "keyframes in a file of version 1");
+}
+
 struct BadValue {
   const char* pointer;
   json value;
@@ -311,6 +348,34 @@ TEST(TemplateFile, NamesEveryValueOutOfRange) {
   ExpectMalformed(empty, "no columns");
 }
 
+TEST(TemplateFile, NamesWhatIsWrongWithKeyframes) {
+  const BadValue cases[] = {
+      {"/keyframes", 3, "keyframes is 3"},
+      {"/keyframes/0", 3, "keyframes[0] is 3"},
+      {"/keyframes/0/colour", 3, "colour"},
+      {"/keyframes/0/column", -1, "keyframes[0].column is -1"},
+      {"/keyframes/0/column", 3, "keyframe 1 has column 3; expected 0 to 2"},
+      {"/keyframes/1/column", 0, "keyframe 2 is before the one before it"},
+      {"/keyframes/0/ones", json::array({0}), "keyframes[0].ones has 0"},
+      {"/keyframes/0/ones", json::array({65}), "keyframes[0].ones has 65"},
+      {"/keyframes/0/ones", json::array({1.5}), "keyframes[0].ones has 1.5"},
+      {"/keyframes/0/ones", json::array({4}), "keyframe 1 has feature 4; expected 1 to 3"},
+      {"/keyframes/0/ones", json::array(), "keyframe 1 has no feature to test"},
+      {"/keyframes/1/zeros", json::array({1}), "features that are not in ones too"},
+      {"/keyframes/0/misses", 2, "keyframe 1 has 2 misses; expected 0 to 1"},
+      {"/keyframes/0/misses", -1, "keyframes[0].misses is -1"},
+      {"/keyframes/1/stiffness", 1.5, "keyframe 2 has stiffness 1.5"},
+      {"/keyframes/1/stiffness", "stiff", "keyframes[1].stiffness is"},
+  };
+  const json good = json::parse(FormatTemplate(SampleWithKeyframes()));
+  for (const BadValue& bad : cases) {
+    json document = good;
+    document[json::json_pointer(bad.pointer)] = bad.value;
+    SCOPED_TRACE(bad.pointer);
+    ExpectMalformed(document, bad.expected);
+  }
+}
+
 TEST(TemplateFile, RefusesWhatIsNotJsonWithItsPlace) {
   for (const char* text : {"", "{", "[1, 2", "{\"format\": nan}", "\xff\xfe", "{} {}", "null x"}) {
     const Error error = ErrorOf([&] { (void)ParseTemplate(text, "bad.json"); });
@@ -350,7 +415,7 @@ TEST(TemplateFile, RefusesEveryCutThatLosesSomething) {
 }
 
 TEST(TemplateFile, DoesNotWriteWhatItWouldNotRead) {
-  std::vector<MotionTemplate> bad(7, SampleTemplate());
+  std::vector<MotionTemplate> bad(8, SampleTemplate());
   bad[0].matrix.values[0] = std::numeric_limits<double>::quiet_NaN();
   bad[1].quantisation = 0.5;
   bad[2].tau = std::numeric_limits<double>::infinity();
@@ -358,6 +423,7 @@ TEST(TemplateFile, DoesNotWriteWhatItWouldNotRead) {
   bad[4].clips[0].last_frame = 7;
   bad[5].name = "\xff";
   bad[6].matrix = {};
+  bad[7].keyframes = {{.column = 3, .tested = 1}};
   for (const MotionTemplate& motion_template : bad) {
     EXPECT_EQ(ErrorOf([&] { (void)FormatTemplate(motion_template); }).code(),
               ErrorCode::kInvalidArgument);

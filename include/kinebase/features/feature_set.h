@@ -94,6 +94,12 @@ struct FeaturePhrase {
   std::vector<FeatureState> states;  // At least one.
 };
 
+// The features of one group, which keyframes are looked for by.
+struct FeatureGroup {
+  std::string name;            // "upper"; empty for features without one.
+  std::uint64_t features = 0;  // Bit i: feature i.
+};
+
 struct FeatureSet {
   std::string name;  // "bonn".
   std::string description;
@@ -105,7 +111,8 @@ struct FeatureSet {
 
   [[nodiscard]] int feature_count() const { return static_cast<int>(features.size()); }
   [[nodiscard]] std::optional<int> Find(std::string_view id) const;
-  [[nodiscard]] std::vector<int> MirrorRows() const;  // [row] → row of the other side.
+  [[nodiscard]] std::vector<FeatureGroup> Groups() const;  // In the order of their first features.
+  [[nodiscard]] std::vector<int> MirrorRows() const;       // [row] → row of the other side.
 };
 
 // Errors  MalformedFile with the line: an unknown type, joint, unit or key, a wrong number of

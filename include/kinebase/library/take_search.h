@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinebase/library/takes.h"
+#include "kinebase/search/keyframe_index.h"
 #include "kinebase/search/ranking.h"
 #include "kinebase/search/template_search.h"
 
@@ -48,5 +49,15 @@ struct RankTakesOptions {
 [[nodiscard]] std::vector<std::vector<TakeHit>> RankTakes(std::span<const MotionTemplate> templates,
                                                           std::span<const TakeFeatures> takes,
                                                           const RankTakesOptions& options = {});
+
+// The same within stretches only; a stretch's recording is the index of its take.
+[[nodiscard]] std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
+                                               std::span<const TakeFeatures> takes,
+                                               std::span<const Stretch> stretches,
+                                               const SearchOptions& options = {});
+
+// Where all takes show what, for keyframes of templates with this feature set.
+[[nodiscard]] KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes,
+                                       const FeatureSet& features);
 
 }  // namespace kinebase

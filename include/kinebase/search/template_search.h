@@ -9,6 +9,7 @@
 
 #include "kinebase/core/progress.h"
 #include "kinebase/features/feature_matrix.h"
+#include "kinebase/search/feature_index.h"
 #include "kinebase/search/hits.h"
 
 namespace kinebase {
@@ -30,6 +31,16 @@ struct SearchOptions {
 // Threads  The result does not depend on the thread count.
 [[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
                                               std::span<const FeatureMatrix> recordings,
+                                              const SearchOptions& options = {});
+
+// The same within stretches only, as search/keyframe_index.h selects them. No path leaves its
+// stretch; hits of one recording suppress each other as ever.
+//
+// stretches  By recording and place, without overlaps.
+// Errors     Also InvalidArgument for stretches that are otherwise or leave their recording.
+[[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                              std::span<const FeatureMatrix> recordings,
+                                              std::span<const Stretch> stretches,
                                               const SearchOptions& options = {});
 
 }  // namespace kinebase

@@ -76,6 +76,20 @@ struct Calibration {
   friend bool operator==(const Calibration&, const Calibration&) = default;
 };
 
+// A moment of the motion that a recording must show before the template is looked for there, by
+// some of the features; templates/keyframes.h chooses them.
+struct Keyframe {
+  int column = 0;            // Of the template, 0-based.
+  std::uint64_t tested = 0;  // Bit i: feature i is looked at.
+  std::uint64_t ones = 0;    // Those of the tested that must hold; the others must not.
+  int misses = 0;            // How many of the tested may be otherwise; fewer than there are.
+  // How closely the time since the keyframe before must be the template's: from 0, half to twice
+  // as long, to 1, as long. Without: only all keyframes together are bounded.
+  std::optional<double> stiffness;
+
+  friend bool operator==(const Keyframe&, const Keyframe&) = default;
+};
+
 // A template with all that is known of it; what a template file holds.
 struct MotionTemplate {
   std::string name;
@@ -92,6 +106,7 @@ struct MotionTemplate {
   std::string tau_origin;            // How it was chosen.
   std::optional<Contrast> contrast;  // Without: a plain template, as in the paper.
   std::optional<Calibration> calibration;
+  std::vector<Keyframe> keyframes;  // By column; may be empty.
 
   friend bool operator==(const MotionTemplate&, const MotionTemplate&) = default;
 };
