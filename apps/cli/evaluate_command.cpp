@@ -184,6 +184,7 @@ Rows AccuracyRows(const std::vector<AnnotateEvaluation>& results) {
 
 std::vector<Method> ChosenMethods(const std::vector<std::string>& names) {
   std::vector<Method> methods;
+  methods.reserve(names.size());
   for (const std::string& name : names) methods.push_back(*FindMethod(name));
   return methods;
 }

@@ -196,8 +196,10 @@ LabelledBatch LoadLabelled(const LearnCommandOptions& options, const FeatureSet&
 std::vector<MotionTemplate> LearnTogether(const LearnCommandOptions& options,
                                           const FeatureSet& features, const LabelledBatch& batch) {
   std::vector<const LabelledClip*> clips;
+  clips.reserve(batch.clips.size());
   for (const LabelledClip& clip : batch.clips) clips.push_back(&clip);
   std::vector<RecordingStreams> library;
+  library.reserve(batch.background.size());
   for (const TakeFeatures& take : batch.background)
     library.push_back({&take.features, &take.poses});
   const ClassLearningOptions learning{.learning = options.Learning(),

@@ -187,8 +187,10 @@ TEST(Ranking, LetsTemplatesOfOtherNamesBeRivals) {
 
 TEST(Ranking, DoesNotDependOnThreads) {
   std::vector<Recording> made;
+  made.reserve(20);
   for (int i = 0; i < 20; ++i) made.emplace_back(static_cast<float>(i) / 10);
   std::vector<RecordingStreams> recordings;
+  recordings.reserve(made.size());
   for (const Recording& each : made) recordings.push_back(each.streams());
   const std::vector<MotionTemplate> templates = {Template("a"), Template("b")};
   const auto one = RankHits(templates, recordings, {.threads = 1});
