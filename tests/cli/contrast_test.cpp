@@ -20,7 +20,7 @@ class ContrastCommands : public testing::Test {
  protected:
   // Templates of all classes of both actors, in <scratch>/classes.
   fs::path LearnAll() {
-    const fs::path folder = library_.scratch() / "classes";
+    fs::path folder = library_.scratch() / "classes";
     const ProgramResult run = RunKinebase({"learn", "--list", library_.list(), "--all-classes",
                                            "--method", "mt+", "-o", folder, "--json"});
     EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -13,9 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using testing::Contains;
 using testing::DoubleNear;
-using testing::ElementsAre;
 
 // right, wrong, excused, right, and a third clip that is not found.
 std::vector<JudgedHit> Ranking() {
