@@ -16,7 +16,6 @@ void AddSortCommand(CLI::App& program, int& exit_code);
 void AddRenameCommand(CLI::App& program, int& exit_code);
 void AddLearnCommand(CLI::App& program, int& exit_code);
 void AddTemplateCommand(CLI::App& program, int& exit_code);
-void AddTemplateKeyframesCommand(CLI::App& parent, int& exit_code);  // Below `template`.
 void AddSearchCommand(CLI::App& program, int& exit_code);
 void AddExplainCommand(CLI::App& program, int& exit_code);
 void AddEvaluateCommand(CLI::App& program, int& exit_code);

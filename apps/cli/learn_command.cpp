@@ -1,7 +1,6 @@
 // kinebase learn: a few examples become a motion template.
 
 #include <array>
-#include <map>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -128,84 +127,65 @@ MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet
   return result;
 }
 
-// The clips of all classes of the list, each the background of the others; or those that were
-// named.
+// The clips of all classes of the list, each the background of the others.
 std::vector<ListedClip> ListedClips(const LearnCommandOptions& options) {
-  std::vector<ListedClip> clips;
-  if (!options.class_name.empty())
-    (void)ChosenClips(options);  // Says if it, or an actor, is not there.
-  for (ListedClip& clip : ReadClipList(options.list, options.folders)) {
-    const bool is_asked_for = options.actors.empty() ||
-                              std::ranges::find(options.actors, clip.actor) != options.actors.end();
-    if (!is_asked_for) continue;
-    if (clip.file.empty()) {
-      throw Error(ErrorCode::kNotFound,
-                  fmt::format("'{}' is not below the list's folder; name its folder with --in",
-                              clip.name.string()),
-                  {options.list, clip.line});
-    }
-    clips.push_back(std::move(clip));
-  }
+  // Says what is wrong with the class that is asked for.
+  if (!options.class_name.empty()) (void)ChosenClips(options);
+  std::vector<ListedClip> clips = ReadClipList(options.list, options.folders);
+  std::erase_if(clips, [&](const ListedClip& clip) {
+    return !options.actors.empty() &&
+           std::ranges::find(options.actors, clip.actor) == options.actors.end();
+  });
   return clips;
 }
 
-// Clips with what they show, and other motion.
-struct LabelledBatch {
-  std::vector<LabelledClip> clips;
-  std::vector<TakeFeatures> background;
-  std::vector<TakeFailure> failures;
+// What is learned from, and other motion.
+struct Examples {
+  LabelledBatch labelled;
+  TakeBatch background;
 };
 
-LabelledBatch LoadLabelled(const LearnCommandOptions& options, const FeatureSet& features) {
+Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& features) {
   const ProgressCallback progress = MakeProgress(options.common);
   const auto load = [&](const std::vector<TakeStretch>& stretches) {
     return LoadManyTakeFeatures(stretches, features, options.features.rate_hz, options.common.load,
                                 options.common.threads, progress, true);
   };
-  std::map<std::filesystem::path, ListedClip> by_file;
-  std::vector<TakeStretch> stretches;
+  Examples examples;
   if (options.list.empty()) {
-    stretches = ChosenClips(options);
-  } else {
-    for (ListedClip& clip : ListedClips(options)) {
-      stretches.push_back({.file = clip.file});
-      by_file[clip.file] = std::move(clip);
+    TakeBatch clips = load(ChosenClips(options));
+    for (TakeFeatures& take : clips.takes) {
+      std::string actor = take.name.actor;
+      examples.labelled.clips.push_back({std::move(take), TemplateName(options), std::move(actor)});
     }
+    examples.labelled.failures = std::move(clips.failures);
+  } else {
+    examples.labelled = LoadLabelledClips(ListedClips(options), features, options.features.rate_hz,
+                                          options.common.load, options.common.threads, progress);
   }
-  LabelledBatch batch;
-  TakeBatch clips = load(stretches);
-  for (TakeFeatures& take : clips.takes) {
-    const auto listed = by_file.find(take.path);
-    const bool is_listed = listed != by_file.end();
-    std::string class_name = is_listed ? listed->second.class_name : TemplateName(options);
-    std::string actor = is_listed ? listed->second.actor : take.name.actor;
-    batch.clips.push_back({std::move(take), std::move(class_name), std::move(actor)});
-  }
-  batch.failures = std::move(clips.failures);
-  if (options.background.empty()) return batch;
-  stretches.clear();
-  for (auto& file : FindMotionFiles(options.background))
+  if (options.background.empty()) return examples;
+  std::vector<TakeStretch> stretches;
+  for (auto& file : FindMotionFiles(options.background)) {
     stretches.push_back({.file = std::move(file)});
-  TakeBatch background = load(stretches);
-  batch.background = std::move(background.takes);
-  batch.failures.insert(batch.failures.end(), background.failures.begin(),
-                        background.failures.end());
-  return batch;
+  }
+  examples.background = load(stretches);
+  return examples;
 }
 
 std::vector<MotionTemplate> LearnTogether(const LearnCommandOptions& options,
-                                          const FeatureSet& features, const LabelledBatch& batch) {
+                                          const FeatureSet& features, const Examples& examples) {
   std::vector<const LabelledClip*> clips;
-  clips.reserve(batch.clips.size());
-  for (const LabelledClip& clip : batch.clips) clips.push_back(&clip);
-  std::vector<RecordingStreams> library;
-  library.reserve(batch.background.size());
-  for (const TakeFeatures& take : batch.background)
-    library.push_back({&take.features, &take.poses});
+  clips.reserve(examples.labelled.clips.size());
+  for (const LabelledClip& clip : examples.labelled.clips) clips.push_back(&clip);
+  std::vector<RecordingStreams> unlabelled;
+  unlabelled.reserve(examples.background.takes.size());
+  for (const TakeFeatures& take : examples.background.takes) {
+    unlabelled.push_back({&take.features, &take.poses});
+  }
   const ClassLearningOptions learning{.learning = options.Learning(),
                                       .matching = options.Matching(),
                                       .max_rounds = options.max_rounds,
-                                      .library = library,
+                                      .unlabelled = unlabelled,
                                       .threads = options.common.threads,
                                       .progress = MakeProgress(options.common)};
   std::vector<MotionTemplate> templates = LearnClasses(clips, features, learning);
@@ -253,13 +233,16 @@ int RunWithContrast(LearnCommandOptions& options) {
   if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
   if (!options.all_classes) CheckWritable(options.output, options.common.overwrite());
   const FeatureSet features = options.features.Load();
-  const LabelledBatch batch = LoadLabelled(options, features);
-  for (const auto& failure : batch.failures) PrintError(failure.error.what());
-  for (const LabelledClip& clip : batch.clips) {
+  const Examples examples = LoadExamples(options, features);
+  std::vector<TakeFailure> failures = examples.labelled.failures;
+  failures.insert(failures.end(), examples.background.failures.begin(),
+                  examples.background.failures.end());
+  for (const auto& failure : failures) PrintError(failure.error.what());
+  for (const LabelledClip& clip : examples.labelled.clips) {
     PrintDiagnostics(options.common, clip.take.path, clip.take.diagnostics);
   }
-  if (batch.clips.empty()) return kCouldNot;
-  const auto outputs = Outputs(options, LearnTogether(options, features, batch));
+  if (examples.labelled.clips.empty()) return kCouldNot;
+  const auto outputs = Outputs(options, LearnTogether(options, features, examples));
   for (const auto& [learned, file] : outputs) CheckWritable(file, options.common.overwrite());
   Json list = Json::array();
   for (const auto& [learned, file] : outputs) {
@@ -269,10 +252,10 @@ int RunWithContrast(LearnCommandOptions& options) {
   }
   if (options.common.json) {
     Json json = options.all_classes ? Json{{"templates", list}} : list.front();
-    if (!batch.failures.empty()) json["failed"] = FailuresToJson(batch.failures);
+    if (!failures.empty()) json["failed"] = FailuresToJson(failures);
     PrintJson(json);
   }
-  return batch.failures.empty() ? kDone : kPartFailed;
+  return failures.empty() ? kDone : kPartFailed;
 }
 
 int Run(LearnCommandOptions& options) {

@@ -114,6 +114,12 @@ Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& o
     query.motion_template.calibration.reset();
     query.motion_template.tau.reset();
   }
+  if (query.motion_template.contrast && options.keyframes != "none") {
+    throw Error(ErrorCode::kInvalidArgument,
+                "was learned with --method mt+, which looks at everything; --keyframes needs "
+                "--method mt",
+                {path});
+  }
   if (options.method == "mt+" && !query.motion_template.contrast) {
     throw Error(ErrorCode::kInvalidArgument,
                 "is a plain template; learn it with --method mt+ for that", {path});

@@ -12,6 +12,7 @@ namespace kinebase::cli {
 
 void AddTemplateEditingCommands(CLI::App& parent, int& exit_code);  // draw, edit, combine, …
 void AddTemplateCompileCommand(CLI::App& parent, int& exit_code);
+void AddTemplateKeyframesCommand(CLI::App& parent, int& exit_code);
 
 // -o, --name and --force of a command that writes a template.
 void AddTemplateOutputOptions(CLI::App& command, std::filesystem::path& output, std::string& name,

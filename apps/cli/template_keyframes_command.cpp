@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "cli/arguments.h"
-#include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/template_commands.h"
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/text_scanner.h"

@@ -46,27 +46,12 @@ std::int64_t ParseFrame(const std::string& text, const Place& place) {
 // UTF-8 become U+FFFD: names of files can hold both.
 std::string XmlText(std::string_view text) {
   constexpr char32_t kReplacement = 0xFFFD;
-  std::string escaped;
+  std::string clean;
   while (!text.empty()) {
     const char32_t c = internal::TakeCharacter(text).value_or(kReplacement);
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        internal::AppendUtf8(escaped, c < 0x20 || c == 0xFFFE || c == 0xFFFF ? U' ' : c);
-    }
+    internal::AppendUtf8(clean, c < 0x20 || c == 0xFFFE || c == 0xFFFF ? U' ' : c);
   }
-  return escaped;
+  return EscapeXml(clean);
 }
 
 struct Milliseconds {

@@ -59,13 +59,11 @@ std::vector<RecordingStreams> RecordingsOf(std::span<const LabelledClip* const> 
 void Gather(std::span<const MotionTemplate> templates, std::span<const LabelledClip* const> clips,
             std::span<const Method> methods, int threads,
             std::vector<KnownHit> ClassEvidence::*part, std::vector<Evidence>& evidence) {
-  std::vector<MotionTemplate> plain(templates.begin(), templates.end());
-  for (MotionTemplate& each : plain) each.contrast.reset();
   const std::vector<RecordingStreams> recordings = RecordingsOf(clips);
   for (std::size_t m = 0; m < methods.size(); ++m) {
     RankOptions ranking = methods[m].Ranking();
     ranking.threads = threads;
-    const auto hits = RankHits(methods[m].contrast ? templates : plain, recordings, ranking);
+    const auto hits = RankHits(ForMethod(methods[m], templates), recordings, ranking);
     for (std::size_t t = 0; t < templates.size(); ++t) {
       std::vector<KnownHit>& known = evidence[m][templates[t].name].*part;
       const std::vector<KnownHit> judged = JudgeAgainstClips(hits[t], templates[t].name, clips);
@@ -76,13 +74,11 @@ void Gather(std::span<const MotionTemplate> templates, std::span<const LabelledC
 
 void GatherUnlabelled(std::span<const MotionTemplate> templates, std::span<const Method> methods,
                       const ClassLearningOptions& options, std::vector<Evidence>& evidence) {
-  std::vector<MotionTemplate> plain(templates.begin(), templates.end());
-  for (MotionTemplate& each : plain) each.contrast.reset();
   for (std::size_t m = 0; m < methods.size(); ++m) {
     RankOptions ranking = methods[m].Ranking();
     ranking.most_hits = std::numeric_limits<std::size_t>::max();
     ranking.threads = options.threads;
-    const auto hits = RankHits(methods[m].contrast ? templates : plain, options.library, ranking);
+    const auto hits = RankHits(ForMethod(methods[m], templates), options.unlabelled, ranking);
     for (std::size_t t = 0; t < templates.size(); ++t) {
       std::set<int> seen;  // Hits come best first.
       for (const RankedHit& ranked : hits[t]) {
@@ -154,6 +150,40 @@ const Method* FindMethod(std::string_view name) {
   return found == kMethods.end() ? nullptr : found;
 }
 
+std::vector<MotionTemplate> ForMethod(const Method& method,
+                                      std::span<const MotionTemplate> templates) {
+  std::vector<MotionTemplate> seen(templates.begin(), templates.end());
+  if (method.contrast) return seen;
+  for (MotionTemplate& each : seen) each.contrast.reset();
+  return seen;
+}
+
+LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed, const FeatureSet& features,
+                                double rate_hz, const LoadOptions& load, int threads,
+                                const ProgressCallback& progress) {
+  LabelledBatch batch;
+  std::map<std::filesystem::path, const ListedClip*> by_file;
+  std::vector<TakeStretch> stretches;
+  for (const ListedClip& clip : listed) {
+    if (clip.file.empty()) {
+      batch.failures.push_back(
+          {clip.name,
+           Error(ErrorCode::kNotFound, "is not below the list's folder; name its folder with --in",
+                 {.file = clip.name})});
+    } else if (by_file.emplace(clip.file, &clip).second) {
+      stretches.push_back({.file = clip.file});
+    }
+  }
+  TakeBatch takes =
+      LoadManyTakeFeatures(stretches, features, rate_hz, load, threads, progress, true);
+  batch.failures.insert(batch.failures.end(), takes.failures.begin(), takes.failures.end());
+  for (TakeFeatures& take : takes.takes) {
+    const ListedClip& clip = *by_file.at(take.path);
+    batch.clips.push_back({std::move(take), clip.class_name, clip.actor});
+  }
+  return batch;
+}
+
 std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> clips,
                                          const FeatureSet& features,
                                          const ClassLearningOptions& options) {
@@ -164,10 +194,10 @@ std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> cl
   if (options.with_contrast) {
     std::vector<RecordingStreams> labelled = RecordingsOf(clips);
     if (by_class.size() == 1) {
-      labelled.insert(labelled.end(), options.library.begin(), options.library.end());
+      labelled.insert(labelled.end(), options.unlabelled.begin(), options.unlabelled.end());
       background = MeasureBackground(labelled);
     } else {
-      background = MeasureBackground(labelled, options.library);
+      background = MeasureBackground(labelled, options.unlabelled);
     }
   }
   std::vector<MotionTemplate> templates;

@@ -219,18 +219,15 @@ class Evaluator {
     const Stream stream = MakeStream(data_, fold);
     const ClassLearningOptions learning{.learning = options_.profile,
                                         .matching = options_.profile,
-                                        .library = stream.recordings,
+                                        .unlabelled = stream.recordings,
                                         .threads = options_.threads};
     const std::vector<MotionTemplate> learned = LearnClasses(train, features_, learning);
     const std::vector<Evidence> evidence =
         GatherEvidence(train, learned, features_, options_.methods, learning);
     for (std::size_t m = 0; m < options_.methods.size(); ++m) {
       const Method& method = options_.methods[m];
-      std::vector<MotionTemplate> templates = learned;
+      std::vector<MotionTemplate> templates = ForMethod(method, learned);
       Calibrate(evidence[m], templates);
-      if (!method.contrast) {
-        for (MotionTemplate& each : templates) each.contrast.reset();
-      }
       RankOptions ranking = method.Ranking();
       ranking.most_hits = std::numeric_limits<std::size_t>::max();
       ranking.threads = options_.threads;
@@ -400,37 +397,17 @@ EvaluationData LoadEvaluationData(const fs::path& list, std::span<const fs::path
                                   std::span<const fs::path> distractors, const FeatureSet& features,
                                   double rate_hz, const LoadOptions& load, int threads,
                                   const ProgressCallback& progress) {
-  EvaluationData data;
+  LabelledBatch labelled =
+      LoadLabelledClips(ReadClipList(list, folders), features, rate_hz, load, threads, progress);
+  EvaluationData data{.clips = std::move(labelled.clips), .failures = std::move(labelled.failures)};
+  if (distractors.empty()) return data;
   std::vector<TakeStretch> stretches;
-  std::vector<const ListedClip*> listed;
-  const std::vector<ListedClip> clips = ReadClipList(list, folders);
-  for (const ListedClip& clip : clips) {
-    if (clip.file.empty()) {
-      data.failures.push_back(
-          {clip.name, Error(ErrorCode::kNotFound, "is nowhere below the list's folder or --in",
-                            {.file = clip.name})});
-      continue;
-    }
-    stretches.push_back({.file = clip.file});
-    listed.push_back(&clip);
-  }
-  for (fs::path& file :
-       distractors.empty() ? std::vector<fs::path>() : FindMotionFiles(distractors)) {
+  for (fs::path& file : FindMotionFiles(distractors))
     stretches.push_back({.file = std::move(file)});
-    listed.push_back(nullptr);
-  }
-  std::map<fs::path, const ListedClip*> by_file;
-  for (std::size_t i = 0; i < stretches.size(); ++i) by_file[stretches[i].file] = listed[i];
-  TakeBatch batch =
+  TakeBatch others =
       LoadManyTakeFeatures(stretches, features, rate_hz, load, threads, progress, true);
-  data.failures.insert(data.failures.end(), batch.failures.begin(), batch.failures.end());
-  for (TakeFeatures& take : batch.takes) {
-    if (const ListedClip* clip = by_file.at(take.path)) {
-      data.clips.push_back({std::move(take), clip->class_name, clip->actor});
-    } else {
-      data.distractors.push_back(std::move(take));
-    }
-  }
+  data.distractors = std::move(others.takes);
+  data.failures.insert(data.failures.end(), others.failures.begin(), others.failures.end());
   return data;
 }
 

@@ -21,7 +21,7 @@ struct Parts {
   std::vector<const PoseStream*> clip_poses;
   std::vector<FeatureMatrix> fillers;
   std::vector<const PoseStream*> filler_poses;
-  std::vector<RecordingStreams> library;
+  std::vector<RecordingStreams> unlabelled;
 };
 
 int NumberOf(const std::set<std::string>& classes, const std::string& name) {
@@ -42,7 +42,7 @@ Parts PartsFor(const EvaluationData& data, const std::string& actor, std::size_t
   for (std::size_t i = 0; i < data.distractors.size(); ++i) {
     const TakeFeatures& take = data.distractors[i];
     if (i % 2 == half) {
-      parts.library.push_back({&take.features, &take.poses});
+      parts.unlabelled.push_back({&take.features, &take.poses});
     } else {
       parts.fillers.push_back(take.features);
       parts.filler_poses.push_back(&take.poses);
@@ -74,7 +74,7 @@ std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& da
   const Parts parts = PartsFor(data, actor, half);
   const ClassLearningOptions learning{.learning = options.profile,
                                       .matching = options.profile,
-                                      .library = parts.library,
+                                      .unlabelled = parts.unlabelled,
                                       .threads = options.threads};
   const std::vector<MotionTemplate> learned = LearnClasses(parts.train, features, learning);
   const std::vector<Evidence> evidence =
@@ -85,11 +85,8 @@ std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& da
   for (const MotionTemplate& each : learned) classes.push_back(NumberOf(names, each.name));
   std::vector<std::vector<JudgedRecording>> judged(options.methods.size());
   for (std::size_t m = 0; m < options.methods.size(); ++m) {
-    std::vector<MotionTemplate> templates = learned;
+    std::vector<MotionTemplate> templates = ForMethod(options.methods[m], learned);
     Calibrate(evidence[m], templates);
-    for (MotionTemplate& each : templates) {
-      if (!options.methods[m].contrast) each.contrast.reset();
-    }
     judged[m].resize(kSeeds.size());
     ParallelFor(kSeeds.size(), options.threads, [&](std::size_t i) {
       const LongTake take = MakeLongTake(parts.clips, parts.fillers, kSeeds[i]);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "kinebase/core/text_scanner.h"
 #include "pictures/text.h"
 
 namespace kinebase::internal {
@@ -18,29 +19,6 @@ std::string Number(double value) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
-}
-
-std::string Escape(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
 }
 
 std::string Paint(std::string_view property, const Color& color) {
@@ -97,7 +75,7 @@ void SvgCanvas::Circle(PicturePoint centre, double radius, const Color& fill,
 }
 
 void SvgCanvas::BeginGroup(std::string_view name) {
-  svg_ += fmt::format("<g class=\"{}\">\n", Escape(CleanText(name)));
+  svg_ += fmt::format("<g class=\"{}\">\n", EscapeXml(CleanText(name)));
 }
 
 void SvgCanvas::EndGroup() { svg_ += "</g>\n"; }
@@ -118,7 +96,7 @@ void SvgCanvas::DrawText(PicturePoint baseline, const std::string& text, const T
                  "<text x=\"{}\" y=\"{}\" font-size=\"{}\" textLength=\"{}\" "
                  "lengthAdjust=\"spacingAndGlyphs\"{}>{}</text>\n",
                  Number(baseline.x), Number(baseline.y), Number(style.size),
-                 Number(CleanTextWidth(text, style)), attributes, Escape(text));
+                 Number(CleanTextWidth(text, style)), attributes, EscapeXml(text));
 }
 
 }  // namespace kinebase::internal

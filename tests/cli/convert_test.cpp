@@ -156,6 +156,18 @@ TEST_F(Converting, ResamplesAndKeepsTheTime) {
   EXPECT_EQ(Info(thrice)["frames"], (Info(squat())["frames"].get<int>() - 1) * 3 + 1);
 }
 
+TEST_F(Converting, StoresAC3dAsAsked) {
+  const std::string whole = Make(squat(), "int16.c3d", {"--storage", "int16"});
+  EXPECT_EQ(Info(whole)["contents"]["storage"], "int16");
+  EXPECT_EQ(Info(Make(whole, "kept.c3d"))["contents"]["storage"], "int16");
+  EXPECT_EQ(Info(Make(whole, "float.c3d", {"--storage", "float"}))["contents"]["storage"], "float");
+  // Half a step of a scale that holds two metres in 32,767 of them.
+  const auto before = Joints(squat());
+  const auto after = Joints(whole);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < after.size(); ++i) ASSERT_NEAR(after[i], before[i], 0.01);
+}
+
 TEST_F(Converting, TurnsAndScalesAsAsked) {
   for (const std::string extension : {".c3d", ".trc", ".bvh"}) {
     for (const std::string units : {"mm", "m", "inch"}) {

@@ -250,6 +250,9 @@ TEST(InfoOfRealRecordings, SaysWhatIsOddAndWhere) {
   EXPECT_EQ(csm["markers"], 43);
   EXPECT_EQ(csm["frames"], 2439);
   EXPECT_THAT(MessagesIn(csm), Contains(HasSubstr("optional markers are missing")));
+  EXPECT_THAT(RunKinebase({"info", TestData("data/csm/ThomasFechten.csm")}).out,
+              HasSubstr("  standard  all found, least sure lelbow (0.70)\n"));
+  EXPECT_THAT(MessagesIn(csm), Contains(HasSubstr("marker RANK does not keep its distance")));
   const auto c3d = InfoOf(TestData("data/c3d/btk/c3d.org/sample13/Dance.c3d"));
   EXPECT_THAT(MessagesIn(c3d), Contains(HasSubstr("POINT:FRAMES says 500 frames")));
 }

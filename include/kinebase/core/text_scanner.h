@@ -53,6 +53,9 @@ class LineScanner {
 void AppendShortestText(std::string& out, double value);
 
 [[nodiscard]] bool EqualsIgnoringCase(std::string_view a, std::string_view b);
+// The text with & < > and " as XML's references.
+[[nodiscard]] std::string EscapeXml(std::string_view text);
+
 [[nodiscard]] std::string ToLower(std::string_view text);
 
 // `text` for an error message: shortened, valid UTF-8, unprintable bytes as \xNN.

@@ -40,6 +40,23 @@ struct Method {
 [[nodiscard]] std::span<const Method> RetrievalMethods();
 [[nodiscard]] const Method* FindMethod(std::string_view name);
 
+// The templates as the method sees them: with or without what sets their class off.
+[[nodiscard]] std::vector<MotionTemplate> ForMethod(const Method& method,
+                                                    std::span<const MotionTemplate> templates);
+
+// Clips with what they show, and those that could not be read or are nowhere.
+struct LabelledBatch {
+  std::vector<LabelledClip> clips;
+  std::vector<TakeFailure> failures;
+};
+
+// Reads listed clips with their poses, in parallel.
+// Errors  Cancelled.
+[[nodiscard]] LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed,
+                                              const FeatureSet& features, double rate_hz,
+                                              const LoadOptions& load, int threads,
+                                              const ProgressCallback& progress);
+
 struct ClassLearningOptions {
   Profile learning = Profile::kBonn;
   Profile matching = Profile::kBonn;
@@ -47,14 +64,14 @@ struct ClassLearningOptions {
   bool with_contrast = true;
   // Recordings of motion in general, without labels, whose poses count for the background; best
   // those that will be searched.
-  std::span<const RecordingStreams> library;
+  std::span<const RecordingStreams> unlabelled;
   int threads = 0;
   ProgressCallback progress;
 };
 
 // One template for each class of the clips, by name. The background is all clips, of all classes,
-// and the library; where there is one class alone, how often features are one is measured on the
-// library, too.
+// and what is not labelled; where there is one class alone, how often features are one is measured
+// on that, too.
 // Errors  InvalidArgument: no clips, other features than the set's; Cancelled.
 // Cost    Of LearnTemplate for each class.
 [[nodiscard]] std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> clips,
@@ -65,7 +82,7 @@ struct ClassLearningOptions {
 struct ClassEvidence {
   std::vector<KnownHit> unseen;    // In clips of actors that the template was not learned from,
   std::vector<KnownHit> seen;      // and in all clips, its own among them.
-  std::vector<double> unlabelled;  // The best in each recording of the library.
+  std::vector<double> unlabelled;  // The best in each recording without labels.
 };
 using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 
@@ -95,8 +112,8 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 // than those in clips that were held back, when there was less to learn from: half way between the
 // two medians. The threshold lies a third of the way from there to the best wrong hit in any clip:
 // a library has much more motion to go wrong in than the clips of other classes. At the threshold
-// the confidence is ½. Of a class that is learned alone, wrong is the median of the library's
-// recordings. A class without right or wrong hits keeps what it has.
+// the confidence is ½. Of a class that is learned alone, wrong is the median of the
+// recordings without labels. A class without right or wrong hits keeps what it has.
 void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates);
 
 }  // namespace kinebase

@@ -69,10 +69,11 @@ struct CutReport {
 //
 // The take `HDM05/HDM05_amc/bd/X` is looked for as X.amc there, and as X.c3d in HDM05/HDM05_c3d/bd
 // and there; also without the first folders of its name, so `in` may be HDM05 or HDM05_amc itself.
-// Values of a clip are those of its source. A clip says where it comes from: an AMC in a comment, a
-// C3D in its parameters KINEBASE:SOURCE, FIRST_FRAME and LAST_FRAME. An AMC's skeleton is copied
-// beside it, under its own name where it is found by that and the name is free, else under the
-// clip's.
+// Values of a clip are those of its source; where an AMC's begins in a gap, its first frame has
+// what readers of the source fill in there, which is a note. A clip says where it comes from: an
+// AMC in a comment, a C3D in its parameters KINEBASE:SOURCE, FIRST_FRAME and LAST_FRAME. An AMC's
+// skeleton is copied beside it, under its own name where it is found by that and the name is free,
+// else under the clip's.
 //
 // A clip that cannot be made stops no other: whatever is wrong with it is a failure in the report.
 // A clip that is there already is left alone if it would be the same, and a failure if not and
