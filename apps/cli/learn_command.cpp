@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/update_template.h"
 #include "fmt/format.h"
 #include "kinebase/library/class_learning.h"
 #include "kinebase/library/takes.h"
@@ -32,6 +33,8 @@ struct LearnCommandOptions {
   std::string method = "mt";
   bool all_classes = false;
   std::vector<std::filesystem::path> background;
+  std::filesystem::path update;
+  std::vector<std::filesystem::path> marks;
 
   [[nodiscard]] Profile Learning() const {
     return ParseProfile(learning).value_or(features.ParsedProfile());
@@ -43,6 +46,15 @@ struct LearnCommandOptions {
 
 // Learning needs to know from what, and where to put the result.
 void CheckUsage(const LearnCommandOptions& options) {
+  if (!options.update.empty()) {
+    if (options.marks.empty()) {
+      throw UsageError("--update needs hits that are marked right or wrong: --marks hits.csv");
+    }
+    return;
+  }
+  if (!options.folders.empty() && options.list.empty()) {
+    throw UsageError("--in says where the files of a --list or an --update are");
+  }
   if (options.clips.empty() && options.list.empty()) {
     throw UsageError("learn needs clips, or a list of clips: --list clips.csv --class NAME");
   }
@@ -261,7 +273,15 @@ int RunWithContrast(LearnCommandOptions& options) {
 int Run(LearnCommandOptions& options) {
   const Stopwatch watch;
   CheckUsage(options);
-  if (options.method == "mt+") return RunWithContrast(options);
+  if (!options.update.empty()) {
+    return RunUpdate({.common = options.common,
+                      .template_file = options.update,
+                      .marks = options.marks,
+                      .folders = options.folders,
+                      .feature_set = options.features.feature_set,
+                      .output = options.output,
+                      .max_rounds = options.max_rounds});
+  }
   if (options.method == "mt+") return RunWithContrast(options);
   if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
   CheckWritable(options.output, options.common.overwrite());
@@ -297,6 +317,24 @@ int Run(LearnCommandOptions& options) {
   return batch.failures.empty() ? kDone : kPartFailed;
 }
 
+// After the others: what a template was learned with cannot be changed by hits.
+void AddUpdateOptions(CLI::App& command, LearnCommandOptions& options) {
+  auto* update = command
+                     .add_option("--update", options.update,
+                                 "Improve a template by hits that somebody marked, instead of "
+                                 "learning a new one")
+                     ->type_name("TEMPLATE");
+  command
+      .add_option("--marks", options.marks,
+                  "Hits of search --format csv or --json, with right or wrong as their verdict")
+      ->needs(update)
+      ->type_name("FILE");
+  for (const char* other : {"CLIP", "--name", "--list", "--profile", "--learning", "--matching",
+                            "--rate", "--method", "--background"}) {
+    update->excludes(command.get_option(other));
+  }
+}
+
 }  // namespace
 
 void AddLearnCommand(CLI::App& program, int& exit_code) {
@@ -325,8 +363,9 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       ->delimiter(',')
       ->needs(list)
       ->type_name("NAMES");
-  command->add_option("--in", options->folders, "Folders with the list's files, beside its own")
-      ->needs(list)
+  command
+      ->add_option("--in", options->folders,
+                   "Folders with the files of the list, or of the template and its hits")
       ->type_name("FOLDER");
   AddProfileOption(*command, options->features.profile,
                    "Features, learning and matching as the authors' toolbox (bonn) or the paper")
@@ -354,6 +393,7 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       ->check(WholeNumber(1, 10000))
       ->capture_default_str()
       ->type_name("N");
+  AddUpdateOptions(*command, *options);
   AddOutputOptions(*command, options->common);
   AddThreadsOption(*command, options->common);
   AddForceOption(*command, options->common);
@@ -363,7 +403,8 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       "  kinebase learn squat_1.amc squat_2.amc gym.amc:120-480 --name squat\n"
       "  kinebase learn --list clips.csv --class squat1Reps --actors bd,bk -o squat.template.json\n"
       "  kinebase learn --list clips.csv --all-classes --method mt+ --background takes/ -o "
-      "classes");
+      "classes\n"
+      "  kinebase learn --update squat.template.json --marks hits.csv -o better.template.json");
   command->callback([options, &exit_code] { exit_code = Run(*options); });
 }
 

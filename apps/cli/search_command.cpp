@@ -8,8 +8,11 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/search_output.h"
 #include "fmt/format.h"
+#include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/features/vocabulary.h"
 #include "kinebase/library/take_search.h"
 #include "kinebase/library/takes.h"
 #include "kinebase/templates/keyframes.h"
@@ -31,12 +34,37 @@ struct SearchCommandOptions {
   std::string profile;
   std::string feature_set;
   std::string method;  // Empty: as the template knows.
+  std::string format;  // Empty: as --json says.
+  bool fuzzy = false;
+  std::string features;  // Of a fuzzy search, as FindFeatures takes them.
+  int faults = 0;
+
+  [[nodiscard]] std::string Format() const {
+    if (!format.empty()) return format;
+    return common.json ? "json" : "text";
+  }
 };
+
+void CheckUsage(const SearchCommandOptions& options) {
+  if (options.common.json && options.Format() != "json") {
+    throw UsageError(fmt::format("--json and --format {} both ask for standard output; leave one",
+                                 options.format));
+  }
+  if (options.fuzzy && options.features.empty()) {
+    throw UsageError("--fuzzy needs the features that count: --features rknee bent,lknee bent");
+  }
+  if (options.curve.empty()) return;
+  if (options.templates.size() != 1) throw UsageError("--curve takes one template");
+  CheckWritable(options.curve, options.common.overwrite());
+}
+
+constexpr std::uint64_t kMostFaults = 1000;
 
 // A template that is ready to be searched for.
 struct Query {
   MotionTemplate motion_template;
   FeatureSet features;
+  std::optional<FuzzyQuery> fuzzy;
 };
 
 // Recordings with the features of one set at one rate, and where they show what: made when the
@@ -54,13 +82,6 @@ struct Coverage {
   [[nodiscard]] double share() const {
     return all == 0 ? 1 : static_cast<double>(searched) / static_cast<double>(all);
   }
-};
-
-// A hit with the names that people know it by.
-struct NamedHit {
-  std::string template_name;
-  std::filesystem::path file;
-  TakeHit hit;
 };
 
 // The recordings with the features of one set at one rate; templates that agree in both share them.
@@ -102,13 +123,29 @@ void SetKeyframes(Query& query, const SearchCommandOptions& options) {
   }
 }
 
+// What the template asks for of the selected features, whatever else it knows. With --mirror the
+// selection changes sides too: it names what counts in the template's file.
+FuzzyQuery FuzzyQueryOf(const Query& query, const SearchCommandOptions& options) {
+  const MotionTemplate& motion_template = query.motion_template;
+  const std::vector<int> mirrored = query.features.MirrorRows();
+  std::uint64_t selected = 0;
+  for (const int row : FindFeatures(query.features, options.features)) {
+    selected |=
+        std::uint64_t{1} << (options.mirror ? mirrored[static_cast<std::size_t>(row)] : row);
+  }
+  return MakeFuzzyQuery(
+      Quantize(motion_template.matrix, motion_template.quantisation, motion_template.matching),
+      selected);
+}
+
 Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& options) {
   Query query{.motion_template = ReadTemplate(path)};
   query.features = FeatureSetOfTemplate(path, query.motion_template, options.feature_set);
   SetKeyframes(query, options);
   if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);
   if (const auto profile = ParseProfile(options.profile)) query.motion_template.matching = *profile;
-  if (options.method == "mt" && query.motion_template.contrast) {
+  if (options.fuzzy) query.fuzzy = FuzzyQueryOf(query, options);
+  if ((options.method == "mt" || options.fuzzy) && query.motion_template.contrast) {
     // Threshold and confidence are about other costs.
     query.motion_template.contrast.reset();
     query.motion_template.calibration.reset();
@@ -145,6 +182,14 @@ std::vector<TakeHit> SearchIn(const Query& query, SearchedTakes& takes, const Se
   return SearchTakes(Quantize(motion_template), all, stretches, search);
 }
 
+std::vector<TakeHit> SearchFuzzilyIn(const Query& query, const SearchedTakes& takes,
+                                     const SearchCommandOptions& options, Coverage& coverage) {
+  for (const TakeFeatures& take : takes.batch.takes) coverage.all += take.features.column_count();
+  coverage.searched = coverage.all;
+  return SearchTakes(*query.fuzzy, takes.batch.takes,
+                     {.faults = options.faults, .most_hits = options.most_hits});
+}
+
 std::vector<NamedHit> SearchOne(const Query& query, SearchedTakes& takes,
                                 const SearchCommandOptions& options,
                                 const ProgressCallback& progress, Coverage& coverage) {
@@ -154,7 +199,8 @@ std::vector<NamedHit> SearchOne(const Query& query, SearchedTakes& takes,
       .threads = options.common.threads,
       .progress = progress};
   std::vector<NamedHit> hits;
-  for (const TakeHit& hit : SearchIn(query, takes, search, coverage)) {
+  for (const TakeHit& hit : query.fuzzy ? SearchFuzzilyIn(query, takes, options, coverage)
+                                        : SearchIn(query, takes, search, coverage)) {
     hits.push_back({query.motion_template.name, takes.batch.takes[hit.take].path, hit});
   }
   return hits;
@@ -199,50 +245,37 @@ std::string CurveTable(const Query& query, const TakeBatch& batch) {
   return text;
 }
 
-Json ToJson(const std::vector<NamedHit>& hits, const std::vector<TakeFailure>& failures,
-            std::int64_t frames, double elapsed_s) {
-  Json list = Json::array();
-  for (const auto& [template_name, file, hit] : hits) {
-    list.push_back({{"template", template_name},
-                    {"file", file.string()},
-                    {"first_frame", hit.first_frame},
-                    {"last_frame", hit.last_frame},
-                    {"start_s", hit.start_s},
-                    {"end_s", hit.end_s},
-                    {"cost", hit.cost},
-                    {"confidence", hit.confidence ? Json(*hit.confidence) : Json()}});
+void Show(const std::vector<NamedHit>& hits, const TakeBatch& batch, const Coverage& coverage,
+          double elapsed_s, const SearchCommandOptions& options) {
+  std::int64_t frames = 0;
+  for (const TakeFeatures& take : batch.takes) frames += take.frame_count;
+  if (options.Format() == "json") {
+    Json json = HitsToJson(hits, batch.failures, frames, elapsed_s);
+    if (options.keyframes != "none") json["searched_share"] = coverage.share();
+    PrintJson(json);
+    return;
   }
-  Json json = {{"hits", std::move(list)}, {"scanned_frames", frames}, {"elapsed_s", elapsed_s}};
-  if (!failures.empty()) {
-    Json failed = Json::array();
-    for (const auto& [path, error] : failures) {
-      failed.push_back({{"file", path.string()}, {"message", error.what()}});
-    }
-    json["failed"] = std::move(failed);
+  if (options.Format() == "csv") {
+    Print(HitsToCsv(hits));
+  } else if (!hits.empty()) {
+    Print(HitsToText(hits, options.templates.size() > 1));
   }
-  return json;
-}
-
-std::string ToText(const std::vector<NamedHit>& hits, bool many_templates) {
-  std::vector<std::string> titles = {">cost", ">frames", ">time", "file"};
-  if (many_templates) titles.insert(titles.begin() + 1, "template");
-  TextTable table(std::move(titles));
-  for (const auto& [template_name, file, hit] : hits) {
-    std::vector<std::string> cells = {
-        fmt::format("{:.4f}", hit.cost), fmt::format("{}-{}", hit.first_frame, hit.last_frame),
-        fmt::format("{}-{}", FormatTime(hit.start_s), FormatTime(hit.end_s)), file.string()};
-    if (many_templates) cells.insert(cells.begin() + 1, template_name);
-    table.Add(std::move(cells));
+  PrintNote(
+      options.common,
+      fmt::format("{} in {} frames of {}, {:.2f} s", FormatCount(std::ssize(hits), "hit", "hits"),
+                  frames, FormatCount(std::ssize(batch.takes), "recording", "recordings"),
+                  elapsed_s));
+  if (coverage.searched < coverage.all) {
+    PrintNote(options.common,
+              fmt::format("keyframes left {:.1f} % of the columns to search; motion that does not "
+                          "show them is missed (--keyframes none searches everything)",
+                          100 * coverage.share()));
   }
-  return table.ToString();
 }
 
 int Run(const SearchCommandOptions& options) {
   const Stopwatch watch;
-  if (!options.curve.empty()) {
-    if (options.templates.size() != 1) throw UsageError("--curve takes one template");
-    CheckWritable(options.curve, options.common.overwrite());
-  }
+  CheckUsage(options);
   std::vector<Query> queries;
   queries.reserve(options.templates.size());
   for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
@@ -284,34 +317,36 @@ int Run(const SearchCommandOptions& options) {
   const TakeBatch& batch = batches.begin()->second.batch;  // All read the same files.
   for (const auto& failure : batch.failures) PrintError(failure.error.what());
   if (batch.takes.empty()) return kCouldNot;
-  std::int64_t frames = 0;
   for (const TakeFeatures& take : batch.takes) {
     PrintDiagnostics(options.common, take.path, take.diagnostics);
-    frames += take.frame_count;
   }
   if (!options.curve.empty()) {
     WriteFile(options.curve, CurveTable(queries.front(), batch), options.common.overwrite());
   }
-  if (options.common.json) {
-    Json json = ToJson(hits, batch.failures, frames, watch.seconds());
-    if (options.keyframes != "none") json["searched_share"] = coverage.share();
-    PrintJson(json);
-  } else {
-    if (!hits.empty()) Print(ToText(hits, queries.size() > 1));
-    PrintNote(
-        options.common,
-        fmt::format("{} in {} frames of {}, {:.2f} s", FormatCount(std::ssize(hits), "hit", "hits"),
-                    frames, FormatCount(std::ssize(batch.takes), "recording", "recordings"),
-                    watch.seconds()));
-    if (coverage.searched < coverage.all) {
-      PrintNote(
-          options.common,
-          fmt::format("keyframes left {:.1f} % of the columns to search; motion that does not "
-                      "show them is missed (--keyframes none searches everything)",
-                      100 * coverage.share()));
-    }
-  }
+  Show(hits, batch, coverage, watch.seconds(), options);
   return batch.failures.empty() ? kDone : kPartFailed;
+}
+
+// What a fuzzy search does not know cannot be asked of it.
+void AddFuzzyOptions(CLI::App& command, SearchCommandOptions& options) {
+  auto* fuzzy = command.add_flag("--fuzzy", options.fuzzy,
+                                 "What the template shows of --features in this order, however "
+                                 "long each of it lasts");
+  command
+      .add_option("--features", options.features,
+                  "Features that count in a fuzzy search: F20,lknee bent; or a group: lower")
+      ->needs(fuzzy)
+      ->type_name("NAMES");
+  command
+      .add_option("--faults", options.faults,
+                  "How much may be amiss in a fuzzy search: parts left out, or others between")
+      ->needs(fuzzy)
+      ->check(WholeNumber(0, kMostFaults))
+      ->capture_default_str()
+      ->type_name("N");
+  for (const char* other : {"--tau", "--keyframes", "--curve", "--method", "--profile"}) {
+    fuzzy->excludes(command.get_option(other));
+  }
 }
 
 }  // namespace
@@ -352,12 +387,24 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
       ->check(OneOf({"mt", "mt+"}))
       ->type_name("mt|mt+");
   AddProfileOption(*command, options->profile, "Matching by another profile than the template's");
+  AddFuzzyOptions(*command, *options);
   AddFeatureSetOption(*command, options->feature_set);
   AddOutputOptions(*command, options->common);
+  command
+      ->add_option("--format", options->format,
+                   "A table for people; json; or csv, with a column to mark hits right or wrong in "
+                   "for learn --update")
+      ->check(OneOf({"text", "csv", "json"}))
+      ->type_name("text|csv|json");
   AddThreadsOption(*command, options->common);
   AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);
-  command->footer("Example:\n  kinebase search squat.template.json --in recordings/ --tau 0.04");
+  command->footer(
+      "Examples:\n"
+      "  kinebase search squat.template.json --in recordings/ --tau 0.04\n"
+      "  kinebase search squat.template.json --in recordings/ --fuzzy --features \"rknee "
+      "bent,lknee "
+      "bent\"");
   command->callback([options, &exit_code] { exit_code = Run(*options); });
 }
 

@@ -1,5 +1,6 @@
 // kinebase template: a template as data, as a picture, and for the other side of the body.
 
+#include <algorithm>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -75,6 +76,12 @@ std::string Describe(const MotionTemplate& motion_template) {
     line("", clip.first_frame == 0
                  ? clip.file
                  : fmt::format("{}:{}-{}", clip.file, clip.first_frame, clip.last_frame));
+  }
+  if (!motion_template.marks.empty()) {
+    const auto right =
+        std::ranges::count(motion_template.marks, Verdict::kRight, &TemplateMark::verdict);
+    line("marks", fmt::format("{} right, {} wrong (kinebase learn --update)", right,
+                              std::ssize(motion_template.marks) - right));
   }
   return text;
 }

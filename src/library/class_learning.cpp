@@ -7,6 +7,7 @@
 
 #include "kinebase/core/error.h"
 #include "kinebase/templates/learning.h"
+#include "library/threshold_rule.h"
 
 namespace kinebase {
 namespace {
@@ -17,11 +18,6 @@ constexpr std::array<Method, 4> kMethods = {
     Method{.name = "mt+places", .contrast = true, .places = true},
     Method{.name = "mt+", .contrast = true, .places = true, .rivals = true},
 };
-
-// From right to wrong hits; see Calibrate.
-constexpr double kThresholdShare = 1.0 / 3;
-// Of the confidence between them: at what right hits usually cost it is .97, at wrong ones .001.
-constexpr double kSteepness = 10;
 
 using Clips = std::vector<const LabelledClip*>;
 
@@ -95,18 +91,12 @@ struct CostRange {
   double wrong = 0;
 };
 
-std::optional<double> Median(std::vector<double> costs) {
-  if (costs.empty()) return std::nullopt;
-  std::ranges::sort(costs);
-  return (costs[(costs.size() - 1) / 2] + costs[costs.size() / 2]) / 2;
-}
-
 std::optional<double> MedianOfRight(std::span<const KnownHit> hits) {
   std::vector<double> costs;
   for (const KnownHit& hit : hits) {
     if (hit.right) costs.push_back(hit.cost);
   }
-  return Median(std::move(costs));
+  return internal::Median(std::move(costs));
 }
 
 std::optional<CostRange> UsualCosts(const ClassEvidence& evidence) {
@@ -119,7 +109,8 @@ std::optional<CostRange> UsualCosts(const ClassEvidence& evidence) {
       if (!hit.right) range.wrong = std::min(range.wrong, hit.cost);
     }
   }
-  if (std::isinf(range.wrong)) range.wrong = Median(evidence.unlabelled).value_or(range.wrong);
+  if (std::isinf(range.wrong))
+    range.wrong = internal::Median(evidence.unlabelled).value_or(range.wrong);
   // A class that is usually mistaken, or one of which nothing is known.
   if (!(range.wrong > range.right) || std::isinf(range.wrong)) return std::nullopt;
   return range;
@@ -253,10 +244,10 @@ void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates) {
     if (of_class == evidence.end()) continue;
     const std::optional<CostRange> range = UsualCosts(of_class->second);
     if (!range) continue;
-    each.tau = range->right + kThresholdShare * (range->wrong - range->right);
+    each.tau = internal::ThresholdBetween(range->right, range->wrong);
     each.tau_origin = "a third of the way from right to wrong hits in the training clips";
-    const double slope = kSteepness / (range->wrong - range->right);
-    each.calibration = Calibration{.slope = slope, .offset = -slope * *each.tau};
+    each.calibration =
+        internal::CalibrationAt(*each.tau, internal::kSteepness / (range->wrong - range->right));
   }
 }
 

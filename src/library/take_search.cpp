@@ -40,6 +40,11 @@ std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
   return ToTakeHits(SearchTemplate(motion_template, FeaturesOf(takes), stretches, options), takes);
 }
 
+std::vector<TakeHit> SearchTakes(const FuzzyQuery& query, std::span<const TakeFeatures> takes,
+                                 const FuzzyOptions& options) {
+  return ToTakeHits(SearchFuzzy(query, FeaturesOf(takes), options), takes);
+}
+
 KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes, const FeatureSet& features) {
   return KeyframeIndex(FeaturesOf(takes), features.Groups());
 }

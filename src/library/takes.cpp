@@ -52,6 +52,10 @@ class FileIndex {
  public:
   explicit FileIndex(std::span<const fs::path> folders) {
     for (const fs::path& folder : folders) {
+      std::error_code unreachable;
+      if (fs::is_regular_file(folder, unreachable)) {
+        files_.try_emplace(folder.filename().string(), folder);
+      }
       for (fs::path& file : FilesBelow(folder, IsReadable)) {
         std::string name = file.filename().string();
         files_.try_emplace(std::move(name), std::move(file));  // Earlier folders win.
@@ -103,6 +107,30 @@ std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
     std::error_code ignored;
     return !seen.insert(fs::weakly_canonical(file, ignored)).second;
   });
+  return files;
+}
+
+std::vector<fs::path> FindNamedFiles(std::span<const fs::path> names,
+                                     std::span<const fs::path> places) {
+  std::vector<fs::path> files;
+  files.reserve(names.size());
+  std::error_code unreachable;
+  for (const fs::path& name : names) {
+    files.push_back(fs::is_regular_file(name, unreachable) ? name : fs::path());
+  }
+  const auto is_missing = [](const fs::path& file) { return file.empty(); };
+  for (const fs::path& place : places) {
+    if (!fs::exists(place, unreachable)) {
+      throw Error(ErrorCode::kNotFound, "does not exist", {place});
+    }
+    if (std::ranges::none_of(files, is_missing)) continue;
+    const FileIndex index(std::span(&place, 1));
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      if (!files[i].empty()) continue;
+      const fs::path* found = index.Find(names[i].filename().string());
+      if (found != nullptr) files[i] = *found;
+    }
+  }
   return files;
 }
 

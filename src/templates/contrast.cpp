@@ -27,11 +27,22 @@ class Moments {
     }
     ++count_;
   }
+  // As much as one more, by its own mean and variance.
+  void Add(const PoseStatistics& statistics) {
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+      const double mean = statistics.mean[i];
+      sum_[i] += mean;
+      squares_[i] += mean * mean + statistics.variance[i];
+    }
+    ++count_;
+  }
   void Add(std::span<const float> pose) {
     std::array<double, kPoseValues> numbers{};
     std::ranges::copy(pose, numbers.begin());
     Add(numbers);
   }
+
+  [[nodiscard]] bool empty() const { return count_ == 0; }
 
   [[nodiscard]] PoseStatistics Statistics() const {
     PoseStatistics statistics;
@@ -79,22 +90,60 @@ void NormalizeSum(std::span<double> weights) {
   for (double& weight : weights) weight /= sum;
 }
 
+// ones  [column × feature] how often each is one in motion that is not of the class.
 std::vector<double> WeighEntries(const TemplateMatrix& matrix, std::size_t performances,
-                                 std::span<const double> background) {
+                                 std::span<const double> ones) {
   std::vector<double> weights;
   weights.reserve(matrix.values.size());
   const auto count = static_cast<double>(performances);
-  for (int column = 0; column < matrix.column_count(); ++column) {
-    const std::span<const double> values = matrix.Column(column);
-    for (std::size_t feature = 0; feature < values.size(); ++feature) {
-      const double consistency = std::pow(2 * values[feature] - 1, 4);
-      const double p = (count * values[feature] + 0.5) / (count + 1);
-      weights.push_back(consistency *
-                        (kUnsurprising + BernoulliDivergence(p, background[feature])));
-    }
-    NormalizeSum(std::span(weights).last(values.size()));
+  for (std::size_t i = 0; i < matrix.values.size(); ++i) {
+    const double value = matrix.values[i];
+    const double consistency = std::pow(2 * value - 1, 4);
+    const double p = (count * value + 0.5) / (count + 1);
+    weights.push_back(consistency * (kUnsurprising + BernoulliDivergence(p, ones[i])));
+  }
+  const auto features = static_cast<std::size_t>(matrix.feature_count);
+  for (std::size_t first = 0; first < weights.size(); first += features) {
+    NormalizeSum(std::span(weights).subspan(first, features));
   }
   return weights;
+}
+
+std::vector<Alignment> AlignAll(const MotionTemplate& motion_template,
+                                std::span<const RecordingStreams> recordings,
+                                const Background& background) {
+  std::vector<Alignment> alignments;
+  for (const RecordingStreams& recording : recordings) {
+    if (recording.features->feature_count != motion_template.matrix.feature_count ||
+        std::ssize(background.ones) != motion_template.matrix.feature_count) {
+      throw Error(ErrorCode::kMismatch,
+                  fmt::format("template '{}' has {} features, a performance {}, the background {}",
+                              motion_template.name, motion_template.matrix.feature_count,
+                              recording.features->feature_count, background.ones.size()));
+    }
+    alignments.push_back(Align(motion_template.matrix, ToTemplateMatrix(*recording.features),
+                               motion_template.learning));
+  }
+  return alignments;
+}
+
+// The background of each column: the general one, which counts as much as one counterexample, and
+// what counterexamples show there.
+std::vector<double> OnesOfColumns(const TemplateMatrix& matrix, const Background& background,
+                                  std::span<const RecordingStreams> counterexamples,
+                                  std::span<const Alignment> alignments) {
+  std::vector<double> ones;
+  ones.reserve(matrix.values.size());
+  for (int column = 0; column < matrix.column_count(); ++column) {
+    ones.insert(ones.end(), background.ones.begin(), background.ones.end());
+  }
+  for (std::size_t i = 0; i < counterexamples.size(); ++i) {
+    const TemplateMatrix warped = WarpToReference(ToTemplateMatrix(*counterexamples[i].features),
+                                                  alignments[i], matrix.column_count());
+    for (std::size_t v = 0; v < ones.size(); ++v) ones[v] += warped.values[v];
+  }
+  for (double& share : ones) share /= static_cast<double>(counterexamples.size() + 1);
+  return ones;
 }
 
 // The mean pose of each performance in each column of the template, by the alignment of features.
@@ -124,18 +173,27 @@ void AppendAsFloats(std::span<const double> numbers, std::vector<float>& to) {
   for (const double number : numbers) to.push_back(static_cast<float>(number));
 }
 
-PoseModel ModelOf(std::span<const Moments> columns, const PoseStatistics& background) {
+// The general background, and with it what counterexamples show in this column.
+PoseStatistics OthersIn(Moments counterexamples, const PoseStatistics& background) {
+  if (counterexamples.empty()) return background;
+  counterexamples.Add(background);
+  return counterexamples.Statistics();
+}
+
+PoseModel ModelOf(std::span<const Moments> columns, std::span<const Moments> counterexamples,
+                  const PoseStatistics& background) {
   PoseModel model;
   AppendAsFloats(background.variance, model.spread);
-  for (const Moments& column : columns) {
-    const PoseStatistics here = column.Statistics();
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    const PoseStatistics here = columns[column].Statistics();
+    const PoseStatistics others = OthersIn(counterexamples[column], background);
     std::vector<double> weights;
     for (std::size_t i = 0; i < here.mean.size(); ++i) {
       const double spread = background.variance[i];
       const double floor = kVarianceFloor * spread;
       // The root, say, is always in its own place.
       weights.push_back(spread > 0 ? GaussianDivergence(here.mean[i], here.variance[i] + floor,
-                                                        background.mean[i], spread)
+                                                        others.mean[i], others.variance[i])
                                    : 0);
     }
     NormalizeSum(weights);
@@ -179,26 +237,29 @@ Background MeasureBackground(std::span<const RecordingStreams> labelled,
 
 Contrast MeasureContrast(const MotionTemplate& motion_template,
                          std::span<const RecordingStreams> performances,
-                         const Background& background) {
+                         const Background& background,
+                         std::span<const RecordingStreams> counterexamples) {
   if (performances.empty()) {
     throw Error(ErrorCode::kInvalidArgument, "no performances to measure a contrast with");
   }
-  std::vector<Alignment> alignments;
-  for (const RecordingStreams& performance : performances) {
-    if (performance.features->feature_count != motion_template.matrix.feature_count ||
-        std::ssize(background.ones) != motion_template.matrix.feature_count) {
-      throw Error(ErrorCode::kMismatch,
-                  fmt::format("template '{}' has {} features, a performance {}, the background {}",
-                              motion_template.name, motion_template.matrix.feature_count,
-                              performance.features->feature_count, background.ones.size()));
-    }
-    alignments.push_back(Align(motion_template.matrix, ToTemplateMatrix(*performance.features),
-                               motion_template.learning));
-  }
-  const std::vector<Moments> columns = MomentsOfColumns(motion_template, performances, alignments);
-  return {
-      .entry_weights = WeighEntries(motion_template.matrix, performances.size(), background.ones),
-      .places = ModelOf(columns, background.places)};
+  const auto alignments = AlignAll(motion_template, performances, background);
+  const auto counter_alignments = AlignAll(motion_template, counterexamples, background);
+  const auto columns = MomentsOfColumns(motion_template, performances, alignments);
+  const auto others = MomentsOfColumns(motion_template, counterexamples, counter_alignments);
+  const std::vector<double> ones =
+      OnesOfColumns(motion_template.matrix, background, counterexamples, counter_alignments);
+  return {.entry_weights = WeighEntries(motion_template.matrix, performances.size(), ones),
+          .places = ModelOf(columns, others, background.places),
+          .background = background};
+}
+
+std::vector<double> MeasureEntryWeights(const MotionTemplate& motion_template,
+                                        std::size_t performances, const Background& background,
+                                        std::span<const RecordingStreams> counterexamples) {
+  const auto alignments = AlignAll(motion_template, counterexamples, background);
+  return WeighEntries(
+      motion_template.matrix, performances,
+      OnesOfColumns(motion_template.matrix, background, counterexamples, alignments));
 }
 
 }  // namespace kinebase

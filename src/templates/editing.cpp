@@ -72,12 +72,13 @@ void CheckTogether(std::span<const MotionTemplate> templates) {
 }
 
 // A template that asks for something else than it did has no threshold of its own; what set the
-// class off was measured, and keyframes were chosen, for other columns.
+// class off was measured, keyframes were chosen and hits were judged, for other columns.
 void DropThreshold(MotionTemplate& motion_template) {
   motion_template.tau.reset();
   motion_template.tau_origin.clear();
   motion_template.calibration.reset();
   motion_template.contrast.reset();
+  motion_template.marks.clear();
   motion_template.keyframes.clear();
 }
 

@@ -35,6 +35,17 @@ std::optional<Profile> ParseProfile(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view ToString(Verdict verdict) {
+  return verdict == Verdict::kRight ? "right" : "wrong";
+}
+
+std::optional<Verdict> ParseVerdict(std::string_view text) {
+  for (const Verdict verdict : {Verdict::kRight, Verdict::kWrong}) {
+    if (text == ToString(verdict)) return verdict;
+  }
+  return std::nullopt;
+}
+
 namespace {
 
 template <typename T>
@@ -65,6 +76,14 @@ void MirrorPoses(PoseModel& model) {
   for (std::size_t x = 0; x < model.mean.size(); x += 3) model.mean[x] = -model.mean[x];
 }
 
+void MirrorBackground(Background& background, const std::vector<int>& features) {
+  MirrorRows(background.ones, features);
+  const std::vector<int> rows = MirrorPoseRows();
+  MirrorRows(background.places.mean, rows);
+  MirrorRows(background.places.variance, rows);
+  for (std::size_t x = 0; x < rows.size(); x += 3) background.places.mean[x] *= -1;
+}
+
 std::uint64_t MirrorBits(std::uint64_t bits, const std::vector<int>& rows) {
   std::uint64_t mirrored = 0;
   for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -83,6 +102,7 @@ MotionTemplate MirrorTemplate(const MotionTemplate& motion_template, const Featu
   if (mirrored.contrast) {
     MirrorRows(mirrored.contrast->entry_weights, rows);
     MirrorPoses(mirrored.contrast->places);
+    if (mirrored.contrast->background) MirrorBackground(*mirrored.contrast->background, rows);
   }
   for (Keyframe& keyframe : mirrored.keyframes) {
     keyframe.tested = MirrorBits(keyframe.tested, rows);

@@ -1,4 +1,4 @@
-// Template files; docs/template-file.md describes every field.
+// Reading template files; docs/template-file.md describes every field.
 #include "kinebase/templates/template_file.h"
 
 #include <algorithm>
@@ -17,16 +17,12 @@
 #include "kinebase/templates/keyframes.h"
 #include "nlohmann/json.hpp"
 #include "templates/matrix_check.h"
+#include "templates/template_checks.h"
 
 namespace kinebase {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::string_view kFormat = "kinebase-template";
-// Written is the first version that can hold what a template has, so that programs of its time can
-// read it: 2 brought keyframes, contrasts and calibrations.
-constexpr int kVersion = 2;
 
 // A value for a message, not longer than a line can bear.
 std::string ShownValue(const json& value) {
@@ -143,15 +139,16 @@ json ParseJson(std::string_view text, const std::filesystem::path& file) {
 
 // The version.
 std::int64_t ReadHeader(const ObjectReader& root) {
-  if (root.String("format") != kFormat) {
-    root.FailAt("format", fmt::format("\"{}\"; this is no template file", kFormat));
+  if (root.String("format") != internal::kTemplateFormat) {
+    root.FailAt("format",
+                fmt::format("\"{}\"; this is no template file", internal::kTemplateFormat));
   }
   const std::int64_t version = root.Integer("version", 1, std::numeric_limits<std::int64_t>::max());
-  if (version > kVersion) {
+  if (version > internal::kTemplateVersion) {
     throw Error(ErrorCode::kMismatch,
                 fmt::format("template file of version {}, this program reads up to version {}; "
                             "open it with a newer Kinebase",
-                            version, kVersion),
+                            version, internal::kTemplateVersion),
                 {.file = root.file()});
   }
   return version;
@@ -192,6 +189,23 @@ std::vector<TemplateClip> ReadClips(const ObjectReader& root) {
     }
   }
   return clips;
+}
+
+std::vector<TemplateMark> ReadMarks(const ObjectReader& root) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  std::vector<TemplateMark> marks;
+  for (const json& element : root.Array("marks")) {
+    const ObjectReader object(element, fmt::format("marks[{}]", marks.size()), root.file());
+    object.AllowOnly({"file", "first_frame", "last_frame", "verdict"});
+    TemplateMark& mark = marks.emplace_back();
+    mark.file = object.String("file");
+    mark.first_frame = object.Integer("first_frame", 1, kMost);
+    mark.last_frame = object.Integer("last_frame", mark.first_frame, kMost);
+    const std::optional<Verdict> verdict = ParseVerdict(object.String("verdict"));
+    if (!verdict) object.FailAt("verdict", "\"right\" or \"wrong\"");
+    mark.verdict = *verdict;
+  }
+  return marks;
 }
 
 std::vector<double> ReadValues(const json& list, std::string_view name, const ObjectReader& root) {
@@ -281,8 +295,6 @@ std::vector<Keyframe> ReadKeyframes(const ObjectReader& root, const TemplateMatr
   return keyframes;
 }
 
-bool IsThreshold(double tau) { return std::isfinite(tau) && tau >= 0; }
-
 // Rows of equal length, one for each column of the matrix.
 template <typename T>
 std::vector<T> ReadRows(const ObjectReader& object, std::string_view key, int rows, int length) {
@@ -318,11 +330,22 @@ PoseModel ReadPoseModel(const ObjectReader& object, int columns) {
   return model;
 }
 
+Background ReadBackground(const ObjectReader& object) {
+  object.AllowOnly({"ones", "mean", "variance"});
+  const auto list = [&](std::string_view key) {
+    return ReadValues(object.Array(key), object.NameOf(key), object);
+  };
+  return {.ones = list("ones"), .places = {.mean = list("mean"), .variance = list("variance")}};
+}
+
 Contrast ReadContrast(const ObjectReader& object, const TemplateMatrix& matrix) {
-  object.AllowOnly({"entry_weights", "places"});
+  object.AllowOnly({"entry_weights", "places", "background"});
   const int columns = matrix.column_count();
-  return {.entry_weights = ReadRows<double>(object, "entry_weights", columns, matrix.feature_count),
-          .places = ReadPoseModel(object.Object("places"), columns)};
+  Contrast contrast{
+      .entry_weights = ReadRows<double>(object, "entry_weights", columns, matrix.feature_count),
+      .places = ReadPoseModel(object.Object("places"), columns)};
+  if (object.Has("background")) contrast.background = ReadBackground(object.Object("background"));
+  return contrast;
 }
 
 Calibration ReadCalibration(const ObjectReader& object) {
@@ -330,48 +353,18 @@ Calibration ReadCalibration(const ObjectReader& object) {
   return {.slope = object.Number("slope"), .offset = object.Number("offset")};
 }
 
-template <typename T>
-bool AreWeights(const std::vector<T>& weights) {
-  return std::ranges::all_of(weights, [](T each) { return std::isfinite(each) && each >= 0; });
-}
-
-// What is wrong with it, as "a place without a mean"; empty if nothing is.
-std::string ProblemOf(const PoseModel& model, int columns) {
-  const std::size_t values = static_cast<std::size_t>(columns) * kPoseValues;
-  if (model.mean.size() != values || model.weight.size() != values ||
-      model.spread.size() != kPoseValues) {
-    return "poses of another size than the matrix";
-  }
-  const bool is_finite =
-      std::ranges::all_of(model.mean, [](float each) { return std::isfinite(each); });
-  if (!is_finite || !AreWeights(model.weight) || !AreWeights(model.spread)) {
-    return "poses with a number that is not finite, or a weight or spread below 0";
-  }
-  for (std::size_t i = 0; i < values; ++i) {
-    if (model.weight[i] > 0 && model.spread[i % kPoseValues] == 0) {
-      return "poses with a weight where the spread is 0";
-    }
-  }
-  return {};
-}
-
-std::string ProblemOf(const Contrast& contrast, const TemplateMatrix& matrix) {
-  if (contrast.entry_weights.size() != matrix.values.size()) {
-    return "entry weights of another size than the matrix";
-  }
-  if (!AreWeights(contrast.entry_weights)) return "an entry weight that is not finite or below 0";
-  return ProblemOf(contrast.places, matrix.column_count());
-}
-
-std::string ProblemOf(const Calibration& calibration) {
-  const bool is_fine = std::isfinite(calibration.slope) && std::isfinite(calibration.offset);
-  return is_fine ? "" : "a calibration that is not finite";
+// What came with a later version than the file's has no place in it.
+void CheckVersion(const ObjectReader& root, std::string_view key, std::int64_t version, int first) {
+  if (version >= first) return;
+  ObjectReader::FailWith(
+      fmt::format("{} in a file of version {}; they came with {}", key, version, first),
+      root.file());
 }
 
 MotionTemplate ReadFields(const ObjectReader& root, std::int64_t version) {
   root.AllowOnly({"format", "version", "name", "learning", "matching", "feature_set", "clips",
-                  "origin", "rounds", "quantisation", "tau", "tau_origin", "keyframes", "matrix",
-                  "contrast", "calibration"});
+                  "origin", "rounds", "quantisation", "tau", "tau_origin", "keyframes", "marks",
+                  "matrix", "contrast", "calibration"});
   MotionTemplate result;
   result.name = root.String("name");
   result.learning = ReadProfile(root, "learning");
@@ -389,158 +382,27 @@ MotionTemplate ReadFields(const ObjectReader& root, std::int64_t version) {
   }
   if (!root.IsNull("tau")) {
     result.tau = root.Number("tau");
-    if (!IsThreshold(*result.tau)) root.FailAt("tau", "a number of at least 0, or null");
+    if (!internal::IsThreshold(*result.tau)) root.FailAt("tau", "a number of at least 0, or null");
   }
   result.tau_origin = root.String("tau_origin");
   result.matrix = ReadMatrix(root);
   if (root.Has("contrast")) {
     result.contrast = ReadContrast(root.Object("contrast"), result.matrix);
-    const std::string problem = ProblemOf(*result.contrast, result.matrix);
+    const std::string problem = internal::ProblemOf(*result.contrast, result.matrix);
     if (!problem.empty()) ObjectReader::FailWith("contrast has " + problem, root.file());
   }
   if (root.Has("calibration")) {
     result.calibration = ReadCalibration(root.Object("calibration"));
   }
   if (root.Has("keyframes")) {
-    if (version < kVersion) {
-      ObjectReader::FailWith(
-          fmt::format("keyframes in a file of version {}; they came with {}", version, kVersion),
-          root.file());
-    }
+    CheckVersion(root, "keyframes", version, internal::kVersionWithKeyframes);
     result.keyframes = ReadKeyframes(root, result.matrix);
   }
+  if (root.Has("marks")) {
+    CheckVersion(root, "marks", version, internal::kVersionWithMarks);
+    result.marks = ReadMarks(root);
+  }
   return result;
-}
-
-void CheckWritten(const MotionTemplate& motion_template) {
-  std::string problem = internal::ProblemOf(motion_template.matrix);
-  if (!problem.empty()) problem = "matrix has " + problem;
-  if (!internal::IsQuantisation(motion_template.quantisation)) {
-    problem = fmt::format("quantisation threshold {}; expected 0 up to, not including, 0.5",
-                          motion_template.quantisation);
-  }
-  if (motion_template.tau && !IsThreshold(*motion_template.tau)) {
-    problem = fmt::format("tau {}; expected a number of at least 0", *motion_template.tau);
-  }
-  if (motion_template.contrast && problem.empty()) {
-    problem = ProblemOf(*motion_template.contrast, motion_template.matrix);
-  }
-  if (motion_template.calibration && problem.empty()) {
-    problem = ProblemOf(*motion_template.calibration);
-  }
-  if (motion_template.rounds < 0) {
-    problem = fmt::format("{} rounds; expected at least 0", motion_template.rounds);
-  }
-  const std::string keyframes =
-      ProblemOfKeyframes(motion_template.keyframes, motion_template.matrix.column_count(),
-                         motion_template.matrix.feature_count);
-  if (!keyframes.empty()) problem = keyframes;
-  for (const TemplateClip& clip : motion_template.clips) {
-    const bool whole = clip.first_frame == 0 && clip.last_frame == 0;
-    if (!whole && (clip.first_frame < 1 || clip.last_frame < clip.first_frame)) {
-      problem = fmt::format("clip '{}' has frames {} to {}; expected 1 or more, or both 0",
-                            clip.file, clip.first_frame, clip.last_frame);
-    }
-  }
-  if (problem.empty()) return;
-  throw Error(ErrorCode::kInvalidArgument,
-              fmt::format("template '{}' cannot be written: {}", motion_template.name, problem));
-}
-
-std::string JsonString(const std::string& text) {
-  try {
-    return json(text).dump();
-  } catch (const json::type_error&) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("text {} is not UTF-8, so a template file cannot hold it; rename it",
-                            Quoted(text)));
-  }
-}
-
-void AppendNumbers(std::string& out, std::span<const double> numbers) {
-  out += '[';
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0) out += ", ";
-    // JSON readers take "-0" for an integer, which has no negative zero.
-    if (numbers[i] == 0 && std::signbit(numbers[i])) {
-      out += "-0.0";
-    } else {
-      AppendShortestText(out, numbers[i]);
-    }
-  }
-  out += ']';
-}
-
-std::string FormatClips(const std::vector<TemplateClip>& clips) {
-  std::string out = "[";
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    out += fmt::format("{}\n    {{\"file\": {}, \"first_frame\": {}, \"last_frame\": {}}}",
-                       i > 0 ? "," : "", JsonString(clips[i].file), clips[i].first_frame,
-                       clips[i].last_frame);
-  }
-  return out + (clips.empty() ? "]" : "\n  ]");
-}
-
-std::string FormatFeatures(std::uint64_t bits) {
-  std::string out;
-  for (int row = 0; row < kMaxFeatures; ++row) {
-    if (((bits >> row) & 1U) != 0) out += fmt::format("{}{}", out.empty() ? "" : ", ", row + 1);
-  }
-  return '[' + out + ']';
-}
-
-std::string FormatKeyframes(const std::vector<Keyframe>& keyframes) {
-  std::string out = "[";
-  for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    const Keyframe& keyframe = keyframes[i];
-    out += fmt::format(
-        "{}\n    {{\"column\": {}, \"ones\": {}, \"zeros\": {}, \"misses\": {}, "
-        "\"stiffness\": {}}}",
-        i > 0 ? "," : "", keyframe.column, FormatFeatures(keyframe.ones),
-        FormatFeatures(keyframe.tested & ~keyframe.ones), keyframe.misses,
-        keyframe.stiffness ? ToShortestText(*keyframe.stiffness) : "null");
-  }
-  return out + "\n  ]";
-}
-
-// One column a line, so that two templates can be compared by eye and by diff.
-std::string FormatMatrix(const TemplateMatrix& matrix) {
-  std::string out = fmt::format(
-      "{{\n    \"rate_hz\": {},\n    \"feature_count\": {},\n    "
-      "\"weights\": ",
-      ToShortestText(matrix.rate_hz), matrix.feature_count);
-  AppendNumbers(out, matrix.weights);
-  out += ",\n    \"columns\": [";
-  for (int c = 0; c < matrix.column_count(); ++c) {
-    out += c > 0 ? ",\n      " : "\n      ";
-    AppendNumbers(out, matrix.Column(c));
-  }
-  return out + "\n    ]\n  }";
-}
-
-// The same for any numbers, a row of them a line.
-template <typename T>
-std::string FormatRows(std::span<const T> numbers, std::size_t length, std::string_view indent) {
-  std::string out = "[";
-  for (std::size_t first = 0; first < numbers.size(); first += length) {
-    out += fmt::format("{}\n{}  [{}]", first > 0 ? "," : "", indent,
-                       fmt::join(numbers.subspan(first, length), ", "));
-  }
-  return out + fmt::format("\n{}]", indent);
-}
-
-std::string FormatPoseModel(const PoseModel& model) {
-  return fmt::format(
-      "{{\n      \"spread\": [{}],\n      \"mean\": {},\n      \"weight\": {}\n    }}",
-      fmt::join(model.spread, ", "), FormatRows(std::span(model.mean), kPoseValues, "      "),
-      FormatRows(std::span(model.weight), kPoseValues, "      "));
-}
-
-std::string FormatContrast(const Contrast& contrast, const TemplateMatrix& matrix) {
-  return fmt::format("{{\n    \"entry_weights\": {},\n    \"places\": {}\n  }}",
-                     FormatRows(std::span(contrast.entry_weights),
-                                static_cast<std::size_t>(matrix.feature_count), "    "),
-                     FormatPoseModel(contrast.places));
 }
 
 }  // namespace
@@ -554,47 +416,6 @@ MotionTemplate ParseTemplate(std::string_view json_text, const std::filesystem::
 MotionTemplate ReadTemplate(const std::filesystem::path& path) {
   const MappedFile file(path);
   return ParseTemplate(file.text(), path);
-}
-
-std::string FormatTemplate(const MotionTemplate& motion_template) {
-  CheckWritten(motion_template);
-  std::string out = "{\n";
-  const auto add = [&out](std::string_view key, std::string_view value) {
-    out += fmt::format("{}  \"{}\": {}", out.size() > 2 ? ",\n" : "", key, value);
-  };
-  add("format", fmt::format("\"{}\"", kFormat));
-  const bool is_plain = !motion_template.contrast && !motion_template.calibration &&
-                        motion_template.keyframes.empty();
-  add("version", std::to_string(is_plain ? 1 : kVersion));
-  add("name", JsonString(motion_template.name));
-  add("learning", fmt::format("\"{}\"", ToString(motion_template.learning)));
-  add("matching", fmt::format("\"{}\"", ToString(motion_template.matching)));
-  add("feature_set",
-      fmt::format("{{\"name\": {}, \"hash\": \"{:016x}\"}}",
-                  JsonString(motion_template.feature_set), motion_template.feature_set_hash));
-  add("clips", FormatClips(motion_template.clips));
-  if (!motion_template.origin.empty()) add("origin", JsonString(motion_template.origin));
-  add("rounds", std::to_string(motion_template.rounds));
-  add("quantisation", ToShortestText(motion_template.quantisation));
-  add("tau", motion_template.tau ? ToShortestText(*motion_template.tau) : "null");
-  add("tau_origin", JsonString(motion_template.tau_origin));
-  if (!motion_template.keyframes.empty())
-    add("keyframes", FormatKeyframes(motion_template.keyframes));
-  add("matrix", FormatMatrix(motion_template.matrix));
-  if (motion_template.contrast) {
-    add("contrast", FormatContrast(*motion_template.contrast, motion_template.matrix));
-  }
-  if (motion_template.calibration) {
-    add("calibration", fmt::format("{{\"slope\": {}, \"offset\": {}}}",
-                                   ToShortestText(motion_template.calibration->slope),
-                                   ToShortestText(motion_template.calibration->offset)));
-  }
-  return out + "\n}\n";
-}
-
-void WriteTemplate(const MotionTemplate& motion_template, const std::filesystem::path& path,
-                   Overwrite overwrite) {
-  WriteFile(path, FormatTemplate(motion_template), overwrite);
 }
 
 }  // namespace kinebase

@@ -109,6 +109,34 @@ TEST(Contrast, WeighsPosesByHowFarTheyAreFromOthers) {
   EXPECT_NEAR(contrast.places.spread[kTelling], 1, 1e-6);
 }
 
+// The class and what is taken for it share the first feature; the general background knows neither.
+TEST(Contrast, WeighsWhatTellsCounterexamplesApart) {
+  const MotionTemplate motion_template{.matrix = MakeMatrix({{1, 1}, {1, 1}})};
+  const Streams clip({0b11, 0b11}, 2, Still);
+  const Streams wrong({0b01, 0b11}, 2,
+                      [](int /*column*/, int value) { return value == 5 ? 3 : 0; });
+  Background background = MeasureBackground(std::vector{clip.streams()});
+  background.ones = {0.25, 0.25};
+  background.places.variance.assign(kPoseValues, 1);
+  const std::vector<RecordingStreams> clips(3, clip.streams());
+  const std::vector<RecordingStreams> counterexamples(3, wrong.streams());
+  const Contrast contrast = MeasureContrast(motion_template, clips, background, counterexamples);
+  // (b + three times what they show) / 4, column by column; p = 3.5 / 4 everywhere.
+  const double shared = 0.3 + Divergence(3.5 / 4, 3.25 / 4);
+  const double telling = 0.3 + Divergence(3.5 / 4, 0.25 / 4);
+  EXPECT_NEAR(contrast.entry_weights[0], shared / (shared + telling), 1e-12);
+  EXPECT_NEAR(contrast.entry_weights[1], telling / (shared + telling), 1e-12);
+  EXPECT_NEAR(contrast.entry_weights[2], 0.5, 1e-12);
+  EXPECT_NEAR(contrast.entry_weights[3], 0.5, 1e-12);
+  EXPECT_EQ(MeasureEntryWeights(motion_template, 3, background, counterexamples),
+            contrast.entry_weights);
+  // Where they lie elsewhere tells more than where they lie as the class does.
+  EXPECT_GT(contrast.places.weight[5], contrast.places.weight[4]);
+  EXPECT_EQ(contrast.places.spread[5], 1);
+  EXPECT_EQ(contrast.background, background);
+  EXPECT_EQ(MeasureContrast(motion_template, clips, background).background, background);
+}
+
 TEST(Contrast, NeedsPerformancesOfItsFeatures) {
   const MotionTemplate motion_template{.matrix = MakeMatrix({{1, 0}})};
   const Streams clip({0b01}, 2, Still);

@@ -63,11 +63,29 @@ Contrast RandomContrast(Random& random, const TemplateMatrix& matrix) {
   return contrast;
 }
 
+Background RandomBackground(Random& random, int features) {
+  Background background;
+  for (int i = 0; i < features; ++i) background.ones.push_back(0.01 + 0.98 * random.Unit());
+  for (int i = 0; i < kPoseValues; ++i) {
+    background.places.mean.push_back(random.Unit() - 0.5);
+    background.places.variance.push_back(random.Unit());
+  }
+  return background;
+}
+
 // The same with keyframes; they came with version 2.
 MotionTemplate SampleWithKeyframes() {
   MotionTemplate result = SampleTemplate();
   result.keyframes = {{.column = 1, .tested = 0b110, .ones = 0b110, .misses = 1},
                       {.column = 2, .tested = 0b011, .ones = 0b001, .stiffness = 0.25}};
+  return result;
+}
+
+// The same with marks; they came with version 3.
+MotionTemplate SampleWithMarks() {
+  MotionTemplate result = SampleTemplate();
+  result.marks = {{"takes/bd 02.amc", 31, 150, Verdict::kRight},
+                  {"walk.bvh", 1, 1, Verdict::kWrong}};
   return result;
 }
 
@@ -106,6 +124,14 @@ MotionTemplate RandomTemplate(Random& random) {
   result.matrix = RandomMatrix(random, 1 + random.Below(20), 1 + random.Below(64));
   result.matrix.rate_hz = 120 * random.Unit() + 1e-9;
   if (random.Below(2) == 0) result.contrast = RandomContrast(random, result.matrix);
+  if (result.contrast && random.Below(2) == 0) {
+    result.contrast->background = RandomBackground(random, result.matrix.feature_count);
+  }
+  for (int i = random.Below(3); i > 0; --i) {
+    const std::int64_t first = 1 + random.Below(1000);
+    const Verdict verdict = random.Below(2) == 0 ? Verdict::kRight : Verdict::kWrong;
+    result.marks.push_back({text(), first, first + random.Below(1000), verdict});
+  }
   if (random.Below(2) == 0) result.calibration = Calibration{random.Unit(), -random.Unit()};
   for (int column = 0; column < result.matrix.column_count(); ++column) {
     if (random.Below(4) == 0) result.keyframes.push_back(RandomKeyframe(random, result, column));
@@ -117,6 +143,11 @@ TEST(TemplateFile, OpensVersionOne) { EXPECT_EQ(ReadTemplate(SamplePath()), Samp
 
 TEST(TemplateFile, OpensVersionTwo) {
   EXPECT_EQ(ReadTemplate(SamplePath(2)), SampleWithKeyframes());
+}
+
+TEST(TemplateFile, OpensVersionThree) {
+  EXPECT_EQ(ReadTemplate(SamplePath(3)), SampleWithMarks());
+  EXPECT_EQ(FormatTemplate(SampleWithMarks()), ReadText(SamplePath(3)));
 }
 
 TEST(TemplateFile, IsWrittenInTheFirstVersionThatCanHoldIt) {
@@ -177,12 +208,12 @@ TEST(TemplateFile, WritesAFileAndNeverOverAnotherUnasked) {
 
 TEST(TemplateFile, RefusesANewerVersionInPlainWords) {
   json document = json::parse(FormatTemplate(SampleTemplate()));
-  document["version"] = 3;
+  document["version"] = 4;
   document["invention"] = "of tomorrow";
   const Error error = ErrorOf([&] { (void)ParseTemplate(document.dump(), "new.json"); });
   EXPECT_EQ(error.code(), ErrorCode::kMismatch);
   EXPECT_THAT(error.what(), HasSubstr("new.json"));
-  EXPECT_THAT(error.what(), HasSubstr("version 3"));
+  EXPECT_THAT(error.what(), HasSubstr("version 4"));
   EXPECT_THAT(error.what(), HasSubstr("newer Kinebase"));
 }
 
@@ -197,6 +228,8 @@ TEST(TemplateFile, IsOfVersionTwoOnlyIfItNeedsToBe) {
   motion_template.calibration.reset();
   motion_template.contrast = RandomContrast(random, motion_template.matrix);
   EXPECT_EQ(version(), 2);
+  motion_template.contrast->background = RandomBackground(random, 3);
+  EXPECT_EQ(version(), 3);
 }
 
 TEST(TemplateFile, RefusesAContrastThatDoesNotFit) {
@@ -238,6 +271,37 @@ void ExpectMalformed(const json& document, const std::string& expected) {
   EXPECT_EQ(error.code(), ErrorCode::kMalformedFile) << expected;
   EXPECT_THAT(error.what(), HasSubstr(expected));
   EXPECT_THAT(error.what(), HasSubstr("bad.json"));
+}
+
+TEST(TemplateFile, RefusesMarksAndBackgroundsThatMakeNoSense) {
+  Random random(5);
+  MotionTemplate motion_template = SampleWithMarks();
+  motion_template.contrast = RandomContrast(random, motion_template.matrix);
+  motion_template.contrast->background = RandomBackground(random, 3);
+  const json good = json::parse(FormatTemplate(motion_template));
+  ASSERT_EQ(ParseTemplate(good.dump(), "good.json"), motion_template);
+  struct Change {
+    std::string pointer;
+    json value;
+    std::string message;
+  };
+  for (const auto& [pointer, value, message] : std::vector<Change>{
+           {"/version", 2, "marks in a file of version 2"},
+           {"/marks/0/verdict", "maybe", "marks[0].verdict"},
+           {"/marks/1/first_frame", 0, "marks[1].first_frame"},
+           {"/marks/0/last_frame", 30, "marks[0].last_frame"},
+           {"/marks/0/who", "me", "unknown field"},
+           {"/contrast/background/ones/1", 1, "between 0 and 1"},
+           {"/contrast/background/ones", json::array(), "another size"},
+           {"/contrast/background/variance/0", -1, "below 0"},
+       }) {
+    json bad = good;
+    bad[json::json_pointer(pointer)] = value;
+    ExpectMalformed(bad, message);
+  }
+  motion_template.marks[0].first_frame = 0;
+  EXPECT_EQ(ErrorOf([&] { (void)FormatTemplate(motion_template); }).code(),
+            ErrorCode::kInvalidArgument);
 }
 
 // Every object of the document, as a pointer into it.

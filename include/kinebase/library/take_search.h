@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinebase/library/takes.h"
+#include "kinebase/search/fuzzy_search.h"
 #include "kinebase/search/keyframe_index.h"
 #include "kinebase/search/ranking.h"
 #include "kinebase/search/template_search.h"
@@ -55,6 +56,11 @@ struct RankTakesOptions {
                                                std::span<const TakeFeatures> takes,
                                                std::span<const Stretch> stretches,
                                                const SearchOptions& options = {});
+
+// SearchFuzzy, its columns turned into frames and seconds. Errors, cost  As SearchFuzzy.
+[[nodiscard]] std::vector<TakeHit> SearchTakes(const FuzzyQuery& query,
+                                               std::span<const TakeFeatures> takes,
+                                               const FuzzyOptions& options = {});
 
 // Where all takes show what, for keyframes of templates with this feature set.
 [[nodiscard]] KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes,

@@ -22,6 +22,12 @@ namespace kinebase {
 [[nodiscard]] std::vector<std::filesystem::path> FindMotionFiles(
     std::span<const std::filesystem::path> paths);
 
+// Where files are that a list or a template names: as they stand, else by their name in the first
+// of `places`, files and folders, that has it. Empty for those that are nowhere.
+// Errors  NotFound for a place that does not exist.
+[[nodiscard]] std::vector<std::filesystem::path> FindNamedFiles(
+    std::span<const std::filesystem::path> names, std::span<const std::filesystem::path> places);
+
 // A stretch of a take: "take.amc" or "take.amc:120-480" (1-based, inclusive, as people count: the
 // first stored frame is 1).
 struct TakeStretch {

@@ -16,22 +16,6 @@
 
 namespace kinebase {
 
-// Mean and variance of each value of a pose.
-struct PoseStatistics {
-  std::vector<double> mean;      // [kPoseValues]
-  std::vector<double> variance;  // [kPoseValues]
-
-  friend bool operator==(const PoseStatistics&, const PoseStatistics&) = default;
-};
-
-// Motion in general.
-struct Background {
-  std::vector<double> ones;  // [feature] how often it is one, in (0, 1).
-  PoseStatistics places;
-
-  friend bool operator==(const Background&, const Background&) = default;
-};
-
 // labelled  Clips of motion classes: how often features are one is measured on these alone, as
 //           weights from there tell classes apart better.
 // others    Any other recordings, such as the library to be searched: their poses count too.
@@ -44,10 +28,23 @@ struct Background {
 // The weights of a column sum to 1. Each pose value weighs KL of its distribution over the
 // performances, matched to the column, against the background's, both taken for Gaussian.
 //
-// performances  Those that the template was learned from, with poses.
-// Errors        InvalidArgument: no performances; Mismatch: other features than the template's.
+// Counterexamples look like the class and are not. They are matched to the columns too, and the
+// background of each column is theirs and the general one, which counts as much as one of them: so
+// what tells the class from them weighs most (docs/design/feedback.md).
+//
+// performances     Those that the template was learned from, with poses.
+// counterexamples  Stretches about as long as the class, with poses; may be empty.
+// Errors           InvalidArgument: no performances; Mismatch: other features than the template's.
 [[nodiscard]] Contrast MeasureContrast(const MotionTemplate& motion_template,
                                        std::span<const RecordingStreams> performances,
-                                       const Background& background);
+                                       const Background& background,
+                                       std::span<const RecordingStreams> counterexamples = {});
+
+// The entries' weights alone, where the performances are no longer at hand.
+// performances  How many there were.
+// Errors        Mismatch, as above.
+[[nodiscard]] std::vector<double> MeasureEntryWeights(
+    const MotionTemplate& motion_template, std::size_t performances, const Background& background,
+    std::span<const RecordingStreams> counterexamples = {});
 
 }  // namespace kinebase

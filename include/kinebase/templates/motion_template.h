@@ -50,6 +50,21 @@ struct TemplateClip {
   friend bool operator==(const TemplateClip&, const TemplateClip&) = default;
 };
 
+enum class Verdict { kRight, kWrong };
+
+[[nodiscard]] std::string_view ToString(Verdict verdict);  // "right", "wrong".
+[[nodiscard]] std::optional<Verdict> ParseVerdict(std::string_view text);
+
+// What somebody said of a hit; library/feedback.h learns from it.
+struct TemplateMark {
+  std::string file;              // As given.
+  std::int64_t first_frame = 0;  // 1-based, inclusive.
+  std::int64_t last_frame = 0;
+  Verdict verdict = Verdict::kRight;
+
+  friend bool operator==(const TemplateMark&, const TemplateMark&) = default;
+};
+
 // The poses of a class, column by column.
 struct PoseModel {
   std::vector<float> mean;    // [column × kPoseValues]
@@ -59,10 +74,29 @@ struct PoseModel {
   friend bool operator==(const PoseModel&, const PoseModel&) = default;
 };
 
+// Mean and variance of each value of a pose.
+struct PoseStatistics {
+  std::vector<double> mean;      // [kPoseValues]
+  std::vector<double> variance;  // [kPoseValues]
+
+  friend bool operator==(const PoseStatistics&, const PoseStatistics&) = default;
+};
+
+// Motion in general.
+struct Background {
+  std::vector<double> ones;  // [feature] how often it is one, in (0, 1).
+  PoseStatistics places;
+
+  friend bool operator==(const Background&, const Background&) = default;
+};
+
 // What sets the class off from other motion; templates/contrast.h.
 struct Contrast {
   std::vector<double> entry_weights;  // [column × feature]; each column sums to 1, or is all 0.
   PoseModel places;                   // Of the joints.
+  // What it was measured against, so that it can be measured again; files before version 3 have
+  // none.
+  std::optional<Background> background;
 
   friend bool operator==(const Contrast&, const Contrast&) = default;
 };
@@ -107,6 +141,7 @@ struct MotionTemplate {
   std::optional<Contrast> contrast;  // Without: a plain template, as in the paper.
   std::optional<Calibration> calibration;
   std::vector<Keyframe> keyframes;  // By column; may be empty.
+  std::vector<TemplateMark> marks;  // That it was updated with; may be empty.
 
   friend bool operator==(const MotionTemplate&, const MotionTemplate&) = default;
 };
