@@ -54,8 +54,9 @@ Json ToJson(const Evaluation& evaluation) {
     for (const ClassResult& each : result.classes) {
       Json actors = Json::object();
       for (const auto& [actor, scores] : each.by_actor) actors[actor] = ToJson(scores);
-      classes.push_back(
-          {{"class", each.class_name}, {"mean", ToJson(each.mean)}, {"actors", actors}});
+      classes.push_back({{"class", each.class_name},
+                         {"mean", each.by_actor.empty() ? Json() : ToJson(each.mean)},
+                         {"actors", actors}});
     }
     Json reliability = Json::array();
     const std::vector<ReliabilityBin> bins = MeasureReliability(result);
@@ -85,22 +86,29 @@ Rows ScoresByClass(const Evaluation& evaluation) {
       rows.front().push_back(fmt::format("{} {}", result.method.name, measure));
     }
   }
+  // scores_of  Null where a class could not be evaluated.
   const auto add = [&](const std::string& name, const auto& scores_of) {
     std::vector<std::string> row = {name};
     for (const MethodResult& result : evaluation.methods) {
-      const Scores& scores = scores_of(result);
+      const Scores* scores = scores_of(result);
+      if (scores == nullptr) {
+        row.insert(row.end(), 4, "–");
+        continue;
+      }
       for (const double value :
-           {scores.ap_lenient, scores.ap_strict, scores.r_precision, scores.at_own.f1}) {
+           {scores->ap_lenient, scores->ap_strict, scores->r_precision, scores->at_own.f1}) {
         row.push_back(ShortNumber(value));
       }
     }
     rows.push_back(row);
   };
   for (std::size_t i = 0; i < evaluation.methods.front().classes.size(); ++i) {
-    add(evaluation.methods.front().classes[i].class_name,
-        [i](const MethodResult& result) -> const Scores& { return result.classes[i].mean; });
+    add(evaluation.methods.front().classes[i].class_name, [i](const MethodResult& result) {
+      const ClassResult& each = result.classes[i];
+      return each.by_actor.empty() ? nullptr : &each.mean;
+    });
   }
-  add("macro", [](const MethodResult& result) -> const Scores& { return result.macro; });
+  add("macro", [](const MethodResult& result) { return &result.macro; });
   return rows;
 }
 

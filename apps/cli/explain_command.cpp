@@ -1,11 +1,13 @@
 // kinebase explain: why a template matches a stretch of a recording.
 
-#include <bit>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/explain_output.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
 #include "kinebase/library/hit_explanation.h"
@@ -18,165 +20,112 @@ namespace {
 
 struct ExplainOptions {
   CommonOptions common;
-  std::filesystem::path motion_template;
+  std::vector<std::filesystem::path> templates;  // The first is explained; rivals.
   std::filesystem::path motion;
   std::string hit;  // "120-480"; empty: the best one.
   std::filesystem::path output;
   std::string feature_set;
+  std::string method;  // Empty: as the template knows.
   bool mirror = false;
 };
-
-// How one feature fared along the path.
-struct FeatureTally {
-  int feature = 0;
-  int agreed = 0;  // Cells.
-  int disagreed = 0;
-  double cost = 0;  // Of the hit's.
-};
-
-// All that is shown, in one place.
-struct Shown {
-  std::string template_name;
-  std::string file;
-  FeatureSet features;
-  QuantizedTemplate quantized;
-  std::vector<std::uint64_t> recording;  // Feature words of the take.
-  HitExplanation explanation;
-  std::vector<FeatureTally> tallies;  // Those that cost most first; none of free features.
-};
-
-std::vector<FeatureTally> TallyFeatures(const std::vector<ExplainedCell>& cells,
-                                        const QuantizedTemplate& motion_template) {
-  std::vector<FeatureTally> tallies;
-  for (int feature = 0; feature < motion_template.feature_count; ++feature) {
-    FeatureTally tally{.feature = feature};
-    const std::uint64_t bit = std::uint64_t{1} << feature;
-    for (const ExplainedCell& cell : cells) {
-      if ((cell.agreed & bit) != 0) ++tally.agreed;
-      if ((cell.disagreed & bit) == 0) continue;
-      ++tally.disagreed;
-      tally.cost += CostOfFeature(motion_template, cell, feature);
-    }
-    if (tally.agreed + tally.disagreed > 0) tallies.push_back(tally);
-  }
-  std::ranges::stable_sort(tallies, std::greater(), &FeatureTally::cost);
-  return tallies;
-}
 
 std::optional<std::int64_t> LastFrame(const ExplainOptions& options) {
   if (options.hit.empty()) return std::nullopt;
   return ParseMotionArgument(options.motion.string() + ':' + options.hit).last_frame;
 }
 
-Shown Explain(const ExplainOptions& options) {
+// The template as it is to be looked at.
+MotionTemplate LoadTemplate(const std::filesystem::path& file, const FeatureSet& features,
+                            const ExplainOptions& options) {
+  MotionTemplate motion_template = ReadTemplate(file);
+  CheckFeatureSet(motion_template, features);
+  if (options.mirror) motion_template = MirrorTemplate(motion_template, features);
+  if (options.method == "mt") motion_template.contrast.reset();
+  return motion_template;
+}
+
+Explained Explain(const ExplainOptions& options) {
   const std::optional<std::int64_t> last_frame = LastFrame(options);
-  MotionTemplate motion_template = ReadTemplate(options.motion_template);
-  Shown shown{.file = options.motion.string(),
-              .features = FeatureSetOfTemplate(options.motion_template, motion_template,
-                                               options.feature_set)};
-  if (options.mirror) motion_template = MirrorTemplate(motion_template, shown.features);
-  shown.template_name = motion_template.name;
-  shown.quantized = Quantize(motion_template);
-  TakeFeatures take = LoadTakeFeatures({.file = options.motion}, shown.features,
-                                       motion_template.matrix.rate_hz, options.common.load);
-  PrintDiagnostics(options.common, options.motion, take.diagnostics);
-  shown.explanation = ExplainHit(shown.quantized, take, last_frame);
-  shown.recording = std::move(take.features.columns);
-  shown.tallies = TallyFeatures(shown.explanation.cells, shown.quantized);
-  return shown;
+  const std::filesystem::path& first = options.templates.front();
+  Explained explained{
+      .file = options.motion.string(),
+      .features = FeatureSetOfTemplate(first, ReadTemplate(first), options.feature_set)};
+  std::vector<MotionTemplate> templates;
+  for (const auto& file : options.templates) {
+    templates.push_back(LoadTemplate(file, explained.features, options));
+    explained.template_names.push_back(templates.back().name);
+    if (options.templates.size() == 1 || templates.back().contrast) continue;
+    throw Error(ErrorCode::kInvalidArgument,
+                "is searched for as a plain template, which has no rivals; name it alone, or learn "
+                "it with --method mt+",
+                {file});
+  }
+  const bool is_plain = !templates.front().contrast;
+  if (is_plain && options.method == "mt+") {
+    throw Error(ErrorCode::kInvalidArgument,
+                "is a plain template; learn it with --method mt+ for that", {first});
+  }
+  explained.quantized = Quantize(templates.front());
+  explained.take =
+      LoadTakeFeatures({.file = options.motion}, explained.features,
+                       templates.front().matrix.rate_hz, options.common.load, !is_plain);
+  PrintDiagnostics(options.common, options.motion, explained.take.diagnostics);
+  explained.explanation = is_plain ? ExplainHit(explained.quantized, explained.take, last_frame)
+                                   : ExplainRankedHit(templates, explained.take, last_frame);
+  explained.tallies = TallyFeatures(explained.explanation.cells, explained.quantized);
+  explained.joints = TallyJoints(explained.explanation);
+  return explained;
 }
 
-Json NamesOf(std::uint64_t word, const FeatureSet& features) {
-  Json names = Json::array();
-  for (int feature = 0; feature < features.feature_count(); ++feature) {
-    if (((word >> feature) & 1U) != 0) names.push_back(features.features[feature].id);
+// The costs and poses that a picture shows beside the features.
+ComparedCosts CostsOf(const Explained& explained) {
+  const HitExplanation& explanation = explained.explanation;
+  ComparedCosts costs;
+  costs.features.resize(explained.features.features.size());
+  for (const FeatureTally& tally : explained.tallies) costs.features[tally.feature] = tally.cost;
+  std::vector<JointTally> joints = explained.joints;
+  std::ranges::sort(joints, {}, &JointTally::joint);  // As the body has them.
+  for (const JointTally& tally : joints) {
+    costs.joints.push_back({.joint = tally.joint,
+                            .cost = tally.cost,
+                            .off = std::vector<double>(explanation.cells.size())});
   }
-  return names;
-}
-
-Json ToJson(const Shown& shown) {
-  Json path = Json::array();
-  for (const ExplainedCell& cell : shown.explanation.cells) {
-    path.push_back({{"template_column", cell.cell.template_column},
-                    {"column", cell.cell.recording_column},
-                    {"cost", cell.cost},
-                    {"agreed", NamesOf(cell.agreed, shown.features)},
-                    {"disagreed", NamesOf(cell.disagreed, shown.features)}});
-  }
-  Json features = Json::array();
-  for (const FeatureTally& tally : shown.tallies) {
-    const Feature& feature = shown.features.features[tally.feature];
-    features.push_back({{"id", feature.id},
-                        {"name", feature.name},
-                        {"agreed", tally.agreed},
-                        {"disagreed", tally.disagreed},
-                        {"cost", tally.cost}});
-  }
-  const TakeHit& hit = shown.explanation.hit;
-  return {{"template", shown.template_name},
-          {"file", shown.file},
-          {"first_frame", hit.first_frame},
-          {"last_frame", hit.last_frame},
-          {"start_s", hit.start_s},
-          {"end_s", hit.end_s},
-          {"cost", hit.cost},
-          {"path", std::move(path)},
-          {"features", std::move(features)}};
-}
-
-std::string ToText(const Shown& shown) {
-  const TakeHit& hit = shown.explanation.hit;
-  int agreed = 0;
-  int asked = 0;
-  TextTable table({"feature", "name", ">as asked", ">not", ">cost"});
-  std::size_t without_fault = 0;
-  for (const FeatureTally& tally : shown.tallies) {
-    agreed += tally.agreed;
-    asked += tally.agreed + tally.disagreed;
-    if (tally.disagreed == 0) {
-      ++without_fault;
-      continue;
+  for (std::size_t cell = 0; cell < explanation.cells.size(); ++cell) {
+    for (const JointOffset& offset : OffsetsOfCell(explanation, cell)) {
+      const auto joint = std::ranges::find(costs.joints, offset.joint, &ComparedJoint::joint);
+      joint->off[cell] = std::abs(offset.off);
     }
-    const Feature& feature = shown.features.features[tally.feature];
-    table.Add({feature.id, feature.name, std::to_string(tally.agreed),
-               std::to_string(tally.disagreed), fmt::format("{:.4f}", tally.cost)});
   }
-  std::string text = fmt::format(
-      "{} in {}, frames {} to {} ({} to {})\n"
-      "cost {:.4f}: {} of {} entries along the path are as the template asks\n",
-      OnOneLine(shown.template_name), OnOneLine(shown.file), hit.first_frame, hit.last_frame,
-      FormatTime(hit.start_s), FormatTime(hit.end_s), hit.cost, agreed, asked);
-  if (agreed < asked) text += '\n' + table.ToString() + '\n';
-  return text +
-         fmt::format("{} without a fault\n", FormatCount(static_cast<std::int64_t>(without_fault),
-                                                         "feature is", "features are"));
+  return costs;
 }
 
-void Draw(const Shown& shown, const ExplainOptions& options) {
+void Draw(const Explained& explained, const ExplainOptions& options) {
   std::vector<ComparedColumn> columns;
-  for (const ExplainedCell& cell : shown.explanation.cells) {
+  for (const ExplainedCell& cell : explained.explanation.cells) {
     const QuantizedColumn& asked =
-        shown.quantized.columns[static_cast<std::size_t>(cell.cell.template_column)];
-    columns.push_back({asked.consistent, asked.ones,
-                       shown.recording[static_cast<std::size_t>(cell.cell.recording_column)]});
+        explained.quantized.columns[static_cast<std::size_t>(cell.cell.template_column)];
+    const auto found = static_cast<std::size_t>(cell.cell.recording_column);
+    columns.push_back({asked.consistent, asked.ones, explained.take.features.columns[found]});
   }
-  const TakeHit& hit = shown.explanation.hit;
-  const std::string title =
-      fmt::format("{} in {}, frames {} to {}, cost {:.4f}", shown.template_name,
+  const TakeHit& hit = explained.explanation.hit;
+  std::string title =
+      fmt::format("{} in {}, frames {} to {}, cost {:.4f}", explained.template_names.front(),
                   options.motion.filename().string(), hit.first_frame, hit.last_frame, hit.cost);
-  DrawComparison(columns, shown.quantized.rate_hz, shown.features, title, options.output,
-                 options.common.overwrite());
+  std::optional<ComparedCosts> costs;
+  if (explained.has_poses()) costs = CostsOf(explained);
+  DrawComparison(columns, explained.quantized.rate_hz, explained.features, title, options.output,
+                 options.common.overwrite(), costs);
   PrintWritten(options.common, options.output);
 }
 
 int Run(const ExplainOptions& options) {
   if (!options.output.empty()) CheckWritable(options.output, options.common.overwrite());
-  const Shown shown = Explain(options);
-  if (!options.output.empty()) Draw(shown, options);
+  const Explained explained = Explain(options);
+  if (!options.output.empty()) Draw(explained, options);
   if (options.common.json) {
-    PrintJson(ToJson(shown));
+    PrintJson(ToJson(explained));
   } else {
-    Print(ToText(shown));
+    Print(ToText(explained));
   }
   return kDone;
 }
@@ -187,7 +136,11 @@ void AddExplainCommand(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App* command = program.add_subcommand(
       "explain", "Say why a template matches a stretch: what agreed and what did not");
-  command->add_option("TEMPLATE", options->motion_template, "Template file")->required();
+  command
+      ->add_option("TEMPLATE", options->templates,
+                   "Template file; more are its rivals, as in search, if they were learned with "
+                   "--method mt+")
+      ->required();
   command->add_option("--in", options->motion, "Motion file")->required()->type_name("FILE");
   command
       ->add_option("--hit", options->hit,
@@ -199,6 +152,12 @@ void AddExplainCommand(CLI::App& program, int& exit_code) {
                    "Picture: the template and below it the recording, .png or .svg")
       ->check(PictureFile())
       ->type_name("FILE");
+  command
+      ->add_option("--method", options->method,
+                   "mt, as in the paper; mt+, with all that a template learned so knows (default: "
+                   "the latter where it can)")
+      ->check(OneOf({"mt", "mt+"}))
+      ->type_name("mt|mt+");
   command->add_flag("--mirror", options->mirror, "Left and right exchanged");
   AddFeatureSetOption(*command, options->feature_set);
   AddOutputOptions(*command, options->common);

@@ -1,6 +1,7 @@
 // kinebase learn: a few examples become a motion template.
 
 #include <array>
+#include <map>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -236,6 +237,16 @@ std::vector<std::pair<MotionTemplate, std::filesystem::path>> Outputs(
       each.name = TemplateName(options);
       outputs.emplace_back(std::move(each), options.output);
     }
+  }
+  std::map<std::filesystem::path, std::string> names;
+  for (const auto& [learned, file] : outputs) {
+    const auto [entry, is_new] = names.emplace(file, learned.name);
+    if (is_new) continue;
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        fmt::format("would be the template of '{}' and of '{}'; rename one of these classes",
+                    entry->second, learned.name),
+        {file});
   }
   return outputs;
 }

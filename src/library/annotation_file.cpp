@@ -119,7 +119,11 @@ constexpr std::string_view kElanTail =
 std::string RecordingName(const fs::path& file) { return file.stem().string(); }
 
 std::vector<SegmentLabel> ReadSegmentLabels(const fs::path& path) {
-  const CsvTable table = ParseCsv(MappedFile(path).text(), path);
+  return ParseSegmentLabels(MappedFile(path).text(), path);
+}
+
+std::vector<SegmentLabel> ParseSegmentLabels(std::string_view text, const fs::path& path) {
+  const CsvTable table = ParseCsv(text, path);
   const LabelColumns columns = FindColumns(table);
   std::vector<SegmentLabel> labels;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/templates/learning.h"
 #include "library/threshold_rule.h"
@@ -161,8 +162,19 @@ LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed, const Featur
           {clip.name,
            Error(ErrorCode::kNotFound, "is not below the list's folder; name its folder with --in",
                  {.file = clip.name})});
-    } else if (by_file.emplace(clip.file, &clip).second) {
+      continue;
+    }
+    const auto [entry, is_new] = by_file.emplace(clip.file, &clip);
+    if (is_new) {
       stretches.push_back({.file = clip.file});
+    } else if (entry->second->class_name != clip.class_name) {
+      batch.failures.push_back(
+          {clip.name, Error(ErrorCode::kMalformedFile,
+                            fmt::format("is listed as '{}' in line {} and as '{}' in line {}; the "
+                                        "first counts",
+                                        entry->second->class_name, entry->second->line,
+                                        clip.class_name, clip.line),
+                            {.file = clip.name})});
     }
   }
   TakeBatch takes =

@@ -199,6 +199,7 @@ class Evaluator {
       RunFold(folds[i], evaluation);
     }
     Report(folds.size(), folds.size());
+    CheckResults(evaluation);
     for (MethodResult& result : evaluation.methods) Summarize(result);
     for (const TakeFeatures& take : data_.distractors) {
       evaluation.stream_s += static_cast<double>(take.frame_count) / take.rate_hz;
@@ -268,6 +269,21 @@ class Evaluator {
     }
   }
 
+  // All classes have one actor, or one clip.
+  void CheckResults(const Evaluation& evaluation) const {
+    if (evaluation.methods.empty()) return;
+    for (const MethodResult& result : evaluation.methods) {
+      for (const ClassResult& each : result.classes) {
+        if (!each.by_actor.empty()) return;
+      }
+    }
+    throw Error(ErrorCode::kInvalidArgument,
+                options_.protocol == Protocol::kHalf
+                    ? "no class has two clips: nothing is left to search for"
+                    : "no class is performed by two actors: there is nothing to learn from when "
+                      "one is left out");
+  }
+
   static void Summarize(MethodResult& result) {
     std::vector<Scores> means;
     for (ClassResult& each : result.classes) {
@@ -288,15 +304,20 @@ class Evaluator {
 }  // namespace
 
 PossiblyRelevant PossiblyRelevant::Read(const fs::path& table, const fs::path& labels) {
+  return Parse(MappedFile(table).text(), table, MappedFile(labels).text(), labels);
+}
+
+PossiblyRelevant PossiblyRelevant::Parse(std::string_view table_text, const fs::path& table,
+                                         std::string_view labels_text, const fs::path& labels) {
   PossiblyRelevant result;
-  const CsvTable relevant = ParseCsv(MappedFile(table).text(), table);
+  const CsvTable relevant = ParseCsv(table_text, table);
   const std::size_t class_column = relevant.Column("class");
   const std::size_t trial_column = relevant.Column("trial");
   const std::size_t label_column = relevant.Column("label");
   for (const auto& row : relevant.rows) {
     result.relevant_[row[class_column]].emplace_back(row[trial_column], row[label_column]);
   }
-  const CsvTable segments = ParseCsv(MappedFile(labels).text(), labels);
+  const CsvTable segments = ParseCsv(labels_text, labels);
   const std::size_t trial = segments.Column("trial");
   const std::size_t label = segments.Column("label");
   const std::size_t first = segments.Column("first_frame_1based");

@@ -31,11 +31,14 @@ int NumberOf(const std::set<std::string>& classes, const std::string& name) {
 Parts PartsFor(const EvaluationData& data, const std::string& actor, std::size_t half) {
   const std::set<std::string> classes = data.ClassNames();
   Parts parts;
+  std::set<std::string_view> learned;
   for (const LabelledClip& clip : data.clips) {
-    if (clip.actor != actor) {
-      parts.train.push_back(&clip);
-      continue;
-    }
+    if (clip.actor == actor) continue;
+    parts.train.push_back(&clip);
+    learned.insert(clip.class_name);
+  }
+  for (const LabelledClip& clip : data.clips) {
+    if (clip.actor != actor || !learned.contains(clip.class_name)) continue;
     parts.clips.push_back({clip.take.features, NumberOf(classes, clip.class_name)});
     parts.clip_poses.push_back(&clip.take.poses);
   }
@@ -72,6 +75,7 @@ std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& da
                                                         const FeatureSet& features,
                                                         const EvaluateOptions& options) {
   const Parts parts = PartsFor(data, actor, half);
+  if (parts.clips.empty()) return {};
   const ClassLearningOptions learning{.learning = options.profile,
                                       .matching = options.profile,
                                       .unlabelled = parts.unlabelled,
@@ -123,6 +127,11 @@ std::vector<AnnotateEvaluation> EvaluateAnnotation(const EvaluationData& data,
         all.insert(all.end(), of_actor[m].begin(), of_actor[m].end());
       }
     }
+  }
+  if (!judged.empty() && judged.front().empty()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "no class is performed by two actors: there is nothing to learn from when one is "
+                "left out");
   }
   std::vector<AnnotateEvaluation> results;
   for (std::size_t m = 0; m < options.methods.size(); ++m) {

@@ -214,21 +214,34 @@ TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const Fea
   return batch;
 }
 
-std::vector<ListedClip> ReadClipList(const fs::path& list, std::span<const fs::path> folders) {
-  const CsvTable table = ParseCsv(MappedFile(list).text(), list);
+std::vector<ListedClip> ParseClipList(std::string_view text, const fs::path& list) {
+  const CsvTable table = ParseCsv(text, list);
   const std::size_t file_column = table.Column("file");
   const std::size_t class_column = table.Column("class");
   const auto actor_column = table.FindColumn("actor");
-  const FileIndex index(PlacesOf(list, folders));
   std::vector<ListedClip> clips;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
-    const fs::path* file = index.Find(fs::path(row[file_column]).filename().string());
+    for (const std::size_t column : {file_column, class_column}) {
+      if (!Trim(row[column]).empty()) continue;
+      throw Error(ErrorCode::kMalformedFile,
+                  fmt::format("a clip without a {}", table.columns[column]),
+                  {list, table.lines[i]});
+    }
     clips.push_back({.name = row[file_column],
-                     .file = file == nullptr ? fs::path() : *file,
                      .class_name = row[class_column],
                      .actor = actor_column ? row[*actor_column] : std::string(),
                      .line = table.lines[i]});
+  }
+  return clips;
+}
+
+std::vector<ListedClip> ReadClipList(const fs::path& list, std::span<const fs::path> folders) {
+  std::vector<ListedClip> clips = ParseClipList(MappedFile(list).text(), list);
+  const FileIndex index(PlacesOf(list, folders));
+  for (ListedClip& clip : clips) {
+    const fs::path* file = index.Find(clip.name.filename().string());
+    if (file != nullptr) clip.file = *file;
   }
   return clips;
 }

@@ -85,11 +85,13 @@ MatrixLayout LayOutMatrix(const MatrixPicture& picture, const FeatureSet& featur
   const double rows_top = layout.weights_top + (picture.show_weights ? kWeightHeight + 8 : 0);
   layout.matrix_bottom = LayOutRows(rows_top, features.feature_count(), layout);
   layout.legend_top = layout.matrix_bottom + 56;
+  const double notes = picture.row_notes.empty() ? 0 : kNoteWidth;
   const double content =
-      std::max({layout.matrix_left + layout.matrix_width - kMargin, kLeastContentWidth,
+      std::max({layout.matrix_left + layout.matrix_width + notes - kMargin, kLeastContentWidth,
                 std::min(std::ceil(TextWidth(layout.facts, kFactStyle)), kMostFactsWidth)});
-  const double second_legend = picture.found.empty() ? 0 : kLegendPitch;
-  layout.size = {kMargin + content + kMargin, layout.legend_top + 30 + second_legend + kMargin};
+  const double more_legend =
+      (picture.found.empty() ? 0 : kLegendPitch) + (picture.shaded_rows == 0 ? 0 : kLegendPitch);
+  layout.size = {kMargin + content + kMargin, layout.legend_top + 30 + more_legend + kMargin};
   return layout;
 }
 

@@ -23,6 +23,7 @@ inline constexpr double kMargin = 24;
 inline constexpr double kRowPitch = 17;   // From row to row,
 inline constexpr double kRowHeight = 16;  // of which this is coloured: a hairline guides the eye.
 inline constexpr double kWeightHeight = 30;
+inline constexpr double kNoteWidth = 56;    // Of what stands at the right of a row.
 inline constexpr double kLegendPitch = 20;  // From line to line.
 
 // A run of rows of one group.

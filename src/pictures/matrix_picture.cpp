@@ -96,6 +96,19 @@ void DrawRowNames(Canvas& canvas, const FeatureSet& features, const MatrixLayout
   canvas.EndGroup();
 }
 
+// What rows cost, in a column of its own.
+void DrawRowNotes(Canvas& canvas, const MatrixPicture& picture, const MatrixLayout& layout) {
+  TextStyle style = kTickStyle;
+  style.align = TextAlign::kRight;
+  const double right = layout.matrix_left + layout.matrix_width + kNoteWidth;
+  canvas.BeginGroup("notes");
+  canvas.Text({right, layout.row_top.front() - 6}, "cost", style);
+  for (std::size_t row = 0; row < picture.row_notes.size(); ++row) {
+    canvas.Text({right, layout.row_top[row] + 12}, picture.row_notes[row], style);
+  }
+  canvas.EndGroup();
+}
+
 struct RowBand {
   double top = 0;
   double height = 0;
@@ -134,6 +147,12 @@ Color FoundColor(const MatrixPicture& picture, const MatrixLayout& layout, int d
 void DrawRow(Canvas& canvas, const MatrixPicture& picture, const MatrixLayout& layout,
              int feature_count, int feature) {
   const double top = layout.row_top[feature];
+  if (feature >= feature_count - picture.shaded_rows) {
+    DrawBand(canvas, layout, {top, kRowHeight}, [&](int column) {
+      return Mix(kWhite, kWrong, DrawnMean(picture.values, layout, column, feature_count, feature));
+    });
+    return;
+  }
   const double height = picture.found.empty() ? kRowHeight : kRowHeight / 2;
   DrawBand(canvas, layout, {top, height}, [&](int column) {
     return CellColor(picture.coding,
@@ -261,6 +280,11 @@ void DrawLegend(Canvas& canvas, const MatrixPicture& picture, const MatrixLayout
                    std::array{Swatch{kBlack, "below: does not hold"}, Swatch{kWhite, "holds"},
                               Swatch{kWrong, "holds and must not"},
                               Swatch{kLacking, "must hold and does not"}});
+      if (picture.shaded_rows == 0) break;
+      DrawSwatches(canvas, {at.x, at.y + 2 * kLegendPitch},
+                   std::array{Swatch{kWhite, "poses: as the class"},
+                              Swatch{Mix(kWhite, kWrong, 0.5), "1 spread off"},
+                              Swatch{kWrong, "2 and more"}});
       break;
     case CellCoding::kBits:
       if (layout.merged > 1) {
@@ -284,6 +308,7 @@ void DrawMatrixPicture(const MatrixPicture& picture, const FeatureSet& features,
     if (picture.show_weights) DrawWeights(canvas, picture, layout);
     DrawRowNames(canvas, features, layout);
     DrawCells(canvas, picture, features, layout);
+    if (!picture.row_notes.empty()) DrawRowNotes(canvas, picture, layout);
     DrawAxes(canvas, picture, layout);
     DrawLegend(canvas, picture, layout);
   });

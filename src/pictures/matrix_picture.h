@@ -32,6 +32,9 @@ struct MatrixPicture {
   std::vector<FoundEntry> found;  // The same; drawn below the values if there are any.
   std::vector<double> weights;    // [column].
   bool show_weights = true;
+  std::vector<std::string> row_notes;  // [feature] at the right, what a row costs; may be empty.
+  // So many rows, the last ones, are not about features: how far off, from 0 = white to 1 = red.
+  int shaded_rows = 0;
 
   [[nodiscard]] int column_count() const { return static_cast<int>(weights.size()); }
 };

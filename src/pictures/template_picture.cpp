@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "kinebase/core/error.h"
 #include "pictures/matrix_picture.h"
@@ -64,6 +65,51 @@ std::vector<std::string> MatrixFacts(std::size_t columns, double weight, double 
                                      const FeatureSet& features) {
   return {Counted(columns, "column"), fmt::format("{:.2f} s", weight / rate_hz),
           fmt::format("{:g} Hz", rate_hz), "feature set " + features.name};
+}
+
+void CheckCosts(const ComparedCosts& costs, std::size_t columns, const FeatureSet& features) {
+  bool fits = costs.features.size() == features.features.size();
+  for (const ComparedJoint& joint : costs.joints) fits = fits && joint.off.size() == columns;
+  if (fits) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              "the costs of a comparison are of other features or columns than it has");
+}
+
+// A cost as it stands beside its row.
+std::string CostText(double cost) { return cost > 0 ? fmt::format("{:.4f}", cost) : ""; }
+
+// Rows of joints below those of features, and what every row costs.
+void AddCosts(const ComparedCosts& costs, internal::MatrixPicture& picture, FeatureSet& rows) {
+  constexpr double kMostSpreads = 2;  // More is not told apart, as it does not cost more.
+  const std::size_t features = rows.features.size();
+  double of_features = 0;
+  double of_poses = 0;
+  for (const double cost : costs.features) {
+    of_features += cost;
+    picture.row_notes.push_back(CostText(cost));
+  }
+  for (const ComparedJoint& joint : costs.joints) {
+    of_poses += joint.cost;
+    rows.features.push_back({.name = std::string(ToString(joint.joint)), .group = "poses"});
+    picture.row_notes.push_back(CostText(joint.cost));
+  }
+  picture.facts.push_back(
+      fmt::format("cost of features {:.4f} and of poses {:.4f}", of_features, of_poses));
+  picture.shaded_rows = static_cast<int>(costs.joints.size());
+  std::vector<double> values;
+  std::vector<internal::FoundEntry> found;
+  for (std::size_t column = 0; column < picture.weights.size(); ++column) {
+    for (std::size_t row = 0; row < features; ++row) {
+      values.push_back(picture.values[column * features + row]);
+      found.push_back(picture.found[column * features + row]);
+    }
+    for (const ComparedJoint& joint : costs.joints) {
+      values.push_back(std::min(joint.off[column] / kMostSpreads, 1.0));
+      found.emplace_back();
+    }
+  }
+  picture.values = std::move(values);
+  picture.found = std::move(found);
 }
 
 }  // namespace
@@ -137,8 +183,10 @@ void DrawFeatureMatrix(const FeatureMatrix& matrix, const FeatureSet& features,
 
 void DrawComparison(std::span<const ComparedColumn> columns, double rate_hz,
                     const FeatureSet& features, const std::string& title,
-                    const std::filesystem::path& path, Overwrite overwrite) {
+                    const std::filesystem::path& path, Overwrite overwrite,
+                    const std::optional<ComparedCosts>& costs) {
   CheckDrawable(static_cast<int>(columns.size()), rate_hz, "the comparison");
+  if (costs) CheckCosts(*costs, columns.size(), features);
   internal::MatrixPicture picture;
   picture.title = title.empty() ? "Comparison" : title;
   picture.facts =
@@ -156,7 +204,9 @@ void DrawComparison(std::span<const ComparedColumn> columns, double rate_hz,
                                .is_wrong = is_asked && has(column.recording) != has(column.ones)});
     }
   }
-  internal::DrawMatrixPicture(picture, features, path, overwrite);
+  FeatureSet rows = features;
+  if (costs) AddCosts(*costs, picture, rows);
+  internal::DrawMatrixPicture(picture, rows, path, overwrite);
 }
 
 }  // namespace kinebase

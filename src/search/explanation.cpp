@@ -1,6 +1,9 @@
 #include "kinebase/search/explanation.h"
 
+#include <cmath>
+
 #include "search/local_costs.h"
+#include "search/pose_distance.h"
 #include "search/recurrence.h"
 
 namespace kinebase {
@@ -45,6 +48,25 @@ std::vector<ExplainedCell> ExplainPath(const QuantizedTemplate& motion_template,
                          .share = share});
   }
   return explained;
+}
+
+std::vector<ExplainedPlace> ExplainPlaces(const PoseModel& model,
+                                          std::span<const ExplainedCell> path,
+                                          const PoseStream& poses) {
+  std::vector<ExplainedPlace> places;
+  places.reserve(path.size() * kPoseValues);
+  const double share = internal::kPlacesWeight / static_cast<double>(path.size());
+  for (const ExplainedCell& cell : path) {
+    const std::span<const float> pose = poses.Column(cell.cell.recording_column);
+    const std::size_t first = static_cast<std::size_t>(cell.cell.template_column) * kPoseValues;
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      const double spread = std::sqrt(model.spread[i]);
+      // What never moves in other motion says nothing: the root is always in its own place.
+      places.push_back({.off = spread > 0 ? (pose[i] - model.mean[first + i]) / spread : 0,
+                        .cost = share * internal::OffOfValue(model, first + i, i, pose[i])});
+    }
+  }
+  return places;
 }
 
 }  // namespace kinebase

@@ -6,16 +6,13 @@
 #include "kinebase/core/error.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/search/subsequence_dtw.h"
+#include "search/pose_distance.h"
 
 namespace kinebase {
 namespace {
 
-// Chosen on actors left out among the training actors (docs/design/contrast.md); within a factor of
-// two of each the result is the same but for noise.
-constexpr double kPlacesWeight = 0.1;
+// Chosen as the weight of poses.
 constexpr double kRivalWeight = 0.5;
-// Two spreads off is wrong; more says nothing more.
-constexpr double kMostOff = 4;
 // A template with half of its entries wrong is no rival.
 constexpr double kNoRival = 0.5;
 
@@ -23,10 +20,7 @@ double Distance(const PoseModel& model, int column, std::span<const float> pose)
   const std::size_t first = static_cast<std::size_t>(column) * kPoseValues;
   double distance = 0;
   for (std::size_t i = 0; i < pose.size(); ++i) {
-    const double weight = model.weight[first + i];
-    if (weight == 0) continue;
-    const double off = pose[i] - model.mean[first + i];
-    distance += weight * std::min(off * off / model.spread[i], kMostOff);
+    distance += internal::OffOfValue(model, first + i, i, pose[i]);
   }
   return distance;
 }
@@ -37,39 +31,59 @@ struct Searched {
   QuantizedTemplate quantized;
 };
 
+void CheckFeatures(const MotionTemplate& motion_template, const FeatureMatrix& features) {
+  if (features.feature_count == motion_template.matrix.feature_count &&
+      features.rate_hz == motion_template.matrix.rate_hz) {
+    return;
+  }
+  throw Error(ErrorCode::kMismatch,
+              fmt::format("a recording has {} features at {} Hz, template '{}' {} at {} Hz",
+                          features.feature_count, features.rate_hz, motion_template.name,
+                          motion_template.matrix.feature_count, motion_template.matrix.rate_hz));
+}
+
+void CheckPoses(const MotionTemplate& motion_template, const RecordingStreams& recording) {
+  const int poses = recording.poses == nullptr ? 0 : recording.poses->column_count();
+  if (poses == recording.features->column_count()) return;
+  throw Error(
+      ErrorCode::kMismatch,
+      fmt::format("a recording has {} columns of features and {} poses; template '{}' needs "
+                  "a pose for each: extract them too",
+                  recording.features->column_count(), poses, motion_template.name));
+}
+
 std::vector<Searched> Prepare(std::span<const MotionTemplate> templates,
-                              std::span<const RecordingStreams> recordings) {
+                              std::span<const RecordingStreams> recordings, bool with_places) {
   std::vector<Searched> searched;
   for (const MotionTemplate& each : templates) {
     searched.push_back({&each, Quantize(each)});
     for (const RecordingStreams& recording : recordings) {
-      if (recording.features->feature_count == each.matrix.feature_count &&
-          recording.features->rate_hz == each.matrix.rate_hz) {
-        continue;
-      }
-      throw Error(ErrorCode::kMismatch,
-                  fmt::format("a recording has {} features at {} Hz, template '{}' {} at {} Hz",
-                              recording.features->feature_count, recording.features->rate_hz,
-                              each.name, each.matrix.feature_count, each.matrix.rate_hz));
+      CheckFeatures(each, *recording.features);
+      if (each.contrast && with_places) CheckPoses(each, recording);
     }
   }
   return searched;
 }
 
-// How near the best of other classes comes that ends within half a hit's length of its end.
-double Rivalry(const Hit& hit, std::size_t own, std::span<const Searched> searched,
-               std::span<const DeltaCurve> curves) {
-  double best = kNoRival;
+// The best of other classes that ends within half a hit's length of its end, if it is a rival.
+std::optional<Rival> FindRival(const Hit& hit, std::size_t own, std::span<const Searched> searched,
+                               std::span<const DeltaCurve> curves) {
+  std::optional<Rival> best;
   const int reach = (hit.last - hit.first + 1) / 2;
   for (std::size_t other = 0; other < searched.size(); ++other) {
     if (searched[other].motion_template->name == searched[own].motion_template->name) continue;
-    const std::vector<double>& delta = curves[other].delta;
-    const int end = std::min(hit.last + reach + 1, static_cast<int>(delta.size()));
+    const DeltaCurve& curve = curves[other];
+    const int end = std::min(hit.last + reach + 1, static_cast<int>(curve.delta.size()));
     for (int column = std::max(hit.last - reach, 0); column < end; ++column) {
-      best = std::min(best, delta[static_cast<std::size_t>(column)]);
+      const double delta = curve.delta[static_cast<std::size_t>(column)];
+      if (delta >= (best ? best->matching : kNoRival)) continue;
+      best = Rival{.motion_template = other,
+                   .first = curve.start[static_cast<std::size_t>(column)],
+                   .last = column,
+                   .matching = delta};
     }
   }
-  return kNoRival - best;
+  return best;
 }
 
 class Ranker {
@@ -80,10 +94,7 @@ class Ranker {
   // [template] of one recording.
   [[nodiscard]] std::vector<std::vector<RankedHit>> Rank(const RecordingStreams& recording,
                                                          int index) const {
-    std::vector<DeltaCurve> curves;
-    for (const Searched& each : searched_) {
-      curves.push_back(ComputeDelta(each.quantized, recording.features->columns));
-    }
+    const std::vector<DeltaCurve> curves = CurvesOf(recording);
     std::vector<std::vector<RankedHit>> hits(searched_.size());
     for (std::size_t t = 0; t < searched_.size(); ++t) {
       const double tau =
@@ -99,8 +110,27 @@ class Ranker {
     return hits;
   }
 
+  // The path of a template that ends with a column.
+  [[nodiscard]] std::optional<RankedHit> RankEnd(const RecordingStreams& recording, std::size_t t,
+                                                 int last) const {
+    const std::vector<DeltaCurve> curves = CurvesOf(recording);
+    const auto column = static_cast<std::size_t>(last);
+    if (curves[t].start[column] < 0) return std::nullopt;
+    return Score({.first = curves[t].start[column], .last = last, .cost = curves[t].delta[column]},
+                 t, recording, curves);
+  }
+
  private:
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] std::vector<DeltaCurve> CurvesOf(const RecordingStreams& recording) const {
+    std::vector<DeltaCurve> curves;
+    curves.reserve(searched_.size());
+    for (const Searched& each : searched_) {
+      curves.push_back(ComputeDelta(each.quantized, recording.features->columns));
+    }
+    return curves;
+  }
 
   static std::vector<Hit> EveryEnd(const DeltaCurve& curve, double tau, int index) {
     std::vector<Hit> hits;
@@ -121,8 +151,9 @@ class Ranker {
     if (contrast && options_.places) {
       ComparePoses(*contrast, searched_[t].quantized, recording, ranked);
     }
-    ranked.hit.cost += kPlacesWeight * ranked.places;
-    if (options_.rivals) ranked.rival = Rivalry(hit, t, searched_, curves);
+    ranked.hit.cost += internal::kPlacesWeight * ranked.places;
+    if (options_.rivals) ranked.nearest = FindRival(hit, t, searched_, curves);
+    if (ranked.nearest) ranked.rival = kNoRival - ranked.nearest->matching;
     ranked.score = ranked.hit.cost + kRivalWeight * ranked.rival;
     return ranked;
   }
@@ -147,7 +178,7 @@ class Ranker {
 std::vector<std::vector<RankedHit>> RankHits(std::span<const MotionTemplate> templates,
                                              std::span<const RecordingStreams> recordings,
                                              const RankOptions& options) {
-  const std::vector<Searched> searched = Prepare(templates, recordings);
+  const std::vector<Searched> searched = Prepare(templates, recordings, options.places);
   const Ranker ranker(searched, options);
   std::vector<std::vector<std::vector<RankedHit>>> found(recordings.size());
   ParallelFor(recordings.size(), options.threads, "searching", options.progress,
@@ -163,6 +194,14 @@ std::vector<std::vector<RankedHit>> RankHits(std::span<const MotionTemplate> tem
     if (of_template.size() > options.most_hits) of_template.resize(options.most_hits);
   }
   return hits;
+}
+
+std::optional<RankedHit> RankEnd(std::span<const MotionTemplate> templates, std::size_t which,
+                                 const RecordingStreams& recording, int last,
+                                 const RankOptions& options) {
+  const std::vector<Searched> searched =
+      Prepare(templates, std::span(&recording, 1), options.places);
+  return Ranker(searched, options).RankEnd(recording, which, last);
 }
 
 }  // namespace kinebase

@@ -60,11 +60,22 @@ class Moments {
   double count_ = 0;
 };
 
+void CheckPoses(const RecordingStreams& recording) {
+  const int poses = recording.poses == nullptr ? 0 : recording.poses->column_count();
+  if (poses == recording.features->column_count()) return;
+  throw Error(
+      ErrorCode::kInvalidArgument,
+      fmt::format("a recording with {} columns of features and {} poses; a contrast needs a "
+                  "pose for each: extract them too",
+                  recording.features->column_count(), poses));
+}
+
 PoseStatistics MeasurePoses(std::span<const RecordingStreams> labelled,
                             std::span<const RecordingStreams> others) {
   Moments moments;
   for (const auto& recordings : {labelled, others}) {
     for (const RecordingStreams& recording : recordings) {
+      CheckPoses(recording);
       for (int column = 0; column < recording.poses->column_count(); ++column) {
         moments.Add(recording.poses->Column(column));
       }
@@ -242,6 +253,8 @@ Contrast MeasureContrast(const MotionTemplate& motion_template,
   if (performances.empty()) {
     throw Error(ErrorCode::kInvalidArgument, "no performances to measure a contrast with");
   }
+  for (const RecordingStreams& each : performances) CheckPoses(each);
+  for (const RecordingStreams& each : counterexamples) CheckPoses(each);
   const auto alignments = AlignAll(motion_template, performances, background);
   const auto counter_alignments = AlignAll(motion_template, counterexamples, background);
   const auto columns = MomentsOfColumns(motion_template, performances, alignments);

@@ -143,5 +143,107 @@ TEST_F(ContrastCommands, EvaluateLeavesEachActorOut) {
   EXPECT_THAT(text.out, HasSubstr("| **macro** | "));
 }
 
+class EdgesOfLearning : public ContrastCommands {
+ protected:
+  // A list of clips beside the library's own.
+  std::string List(const std::string& rows) {
+    const fs::path file = library_.folder() / "edges.csv";
+    WriteText(file, "file,class,actor\n" + rows);
+    return file;
+  }
+
+  // A row for a clip under the name of any class.
+  std::string Row(std::string_view clip_class, std::string_view actor, int repetition,
+                  const std::string& class_name) {
+    return library_.Clip(clip_class, actor, repetition).filename().string() + ',' + class_name +
+           ',' + std::string(actor) + '\n';
+  }
+
+  std::string Squats() {
+    return Row("squat1Reps", "sa", 1, "squat") + Row("squat1Reps", "sa", 2, "squat") +
+           Row("squat1Reps", "sb", 1, "squat");
+  }
+};
+
+TEST_F(EdgesOfLearning, EvaluateLeavesOutAClassThatOneActorPerforms) {
+  const std::string list = List(Squats() + Row("kickRFront1Reps", "sa", 1, "kick"));
+  const std::vector<std::string> command = {"evaluate",  "--clips", list,
+                                            "--methods", "mt,mt+",  "-q"};
+  const ProgramResult text = RunKinebase(command);
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, testing::ContainsRegex("kick +– +–"));
+  std::vector<std::string> with_json = command;
+  with_json.emplace_back("--json");
+  const json method = RunKinebase(with_json).Json().at("methods").at(1);
+  EXPECT_EQ(method["classes"][0]["class"], "kick");
+  EXPECT_TRUE(method["classes"][0]["mean"].is_null());
+  EXPECT_EQ(method["classes"][1]["mean"]["ap_strict"], method["macro"]["ap_strict"]);
+}
+
+TEST_F(EdgesOfLearning, EvaluateSaysWhatItHasTooLittleOf) {
+  const std::string one_actor =
+      List(Row("squat1Reps", "sa", 1, "squat") + Row("kickRFront1Reps", "sa", 1, "kick"));
+  ExpectOneError(RunKinebase({"evaluate", "--clips", one_actor, "-q"}), 1, {"two or more"});
+  ExpectOneError(RunKinebase({"evaluate", "--clips", one_actor, "--protocol", "half", "-q"}), 1,
+                 {"no class has two clips"});
+  const std::string apart =
+      List(Row("squat1Reps", "sa", 1, "squat") + Row("kickRFront1Reps", "sb", 1, "kick"));
+  ExpectOneError(RunKinebase({"evaluate", "--clips", apart, "-q"}), 1,
+                 {"no class is performed by two actors"});
+  ExpectOneError(RunKinebase({"evaluate", "--clips", List("a.amc,,sa\n"), "-q"}), 1,
+                 {"edges.csv:2", "a clip without a class"});
+}
+
+TEST_F(EdgesOfLearning, LearnTakesOneActorAndOneClip) {
+  const fs::path folder = library_.scratch() / "few";
+  const std::string list =
+      List(Row("squat1Reps", "sa", 1, "squat") + Row("squat1Reps", "sa", 2, "squat") +
+           Row("kickRFront1Reps", "sa", 1, "kick"));
+  const ProgramResult run = RunKinebase(
+      {"learn", "--list", list, "--all-classes", "--method", "mt+", "-o", folder, "-q"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* name : {"squat", "kick"}) {
+    const MotionTemplate learned = ReadTemplate(folder / (std::string(name) + ".template.json"));
+    EXPECT_TRUE(learned.contrast && learned.tau && learned.calibration) << name;
+  }
+}
+
+TEST_F(EdgesOfLearning, LearnRefusesClassesThatWouldShareAFile) {
+  const fs::path folder = library_.scratch() / "shared";
+  const std::string list =
+      List(Row("squat1Reps", "sa", 1, "to/day") + Row("kickRFront1Reps", "sa", 1, "to_day"));
+  ExpectOneError(RunKinebase({"learn", "--list", list, "--all-classes", "--method", "mt+", "-o",
+                              folder, "-q"}),
+                 1, {"'to/day'", "'to_day'", "rename"});
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(EdgesOfLearning, AClipOfTwoClassesIsReportedAndTheRestIsDone) {
+  const std::string list =
+      List(Squats() + Row("squat1Reps", "sb", 1, "kick") + Row("kickRFront1Reps", "sa", 1, "kick"));
+  const ProgramResult run = RunKinebase({"learn", "--list", list, "--all-classes", "--method",
+                                         "mt+", "-o", library_.scratch() / "two", "-q"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_THAT(run.err, HasSubstr("is listed as 'squat' in line 4 and as 'kick' in line 5"));
+}
+
+// Each set is extracted once; both classes are found.
+TEST_F(EdgesOfLearning, SearchAndAnnotateTakeTemplatesOfDifferentFeatureSets) {
+  const std::string squat = LearnAll() / "squat1Reps.template.json";
+  const fs::path paper = library_.scratch() / "paper";
+  RunKinebase({"learn", "--list", library_.list(), "--all-classes", "--method", "mt+", "--profile",
+               "paper", "-o", paper, "-q"});
+  const std::string kick = paper / "kickRFront1Reps.template.json";
+  for (const std::string command : {"search", "annotate"}) {
+    const ProgramResult run =
+        RunKinebase({command, squat, kick, "--in", library_.Clip("squat1Reps", "sb", 1),
+                     library_.Clip("kickRFront1Reps", "sb", 1), "--json", "-q"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out,
+                testing::AllOf(HasSubstr("\"squat1Reps\""), HasSubstr("\"kickRFront1Reps\"")))
+        << command;
+  }
+}
+
 }  // namespace
 }  // namespace kinebase::test

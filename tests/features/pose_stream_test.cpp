@@ -54,11 +54,12 @@ RC_GTEST_PROP(PoseStream, IsTheSameAnywhereAndForAnySize, ()) {
   ExpectSame(ExtractPoses(joints), ExtractPoses(moved));
 }
 
-TEST(PoseStream, PointsTheHipsToX) {
+TEST(PoseStream, PointsTheHipsToXAndTheFrontToZ) {
   JointTrajectories joints = AnyJoints(1, 30);
   At(joints, 0, StandardJoint::kRoot) = {100, 90, 100};
   At(joints, 0, StandardJoint::kLhip) = {100, 95, 110};  // Faces −x, so left is +z.
   At(joints, 0, StandardJoint::kRhip) = {100, 85, 90};
+  At(joints, 0, StandardJoint::kHead) = {70, 90, 100};
   const PoseStream poses = ExtractPoses(joints);
   const auto place = [&](StandardJoint joint) {
     return poses.Column(0).subspan(3 * static_cast<std::size_t>(joint), 3);
@@ -67,6 +68,8 @@ TEST(PoseStream, PointsTheHipsToX) {
   EXPECT_GT(place(StandardJoint::kLhip)[0], 0);
   EXPECT_NEAR(place(StandardJoint::kLhip)[2], 0, 1e-6);
   EXPECT_NEAR(place(StandardJoint::kLhip)[0] / place(StandardJoint::kLhip)[1], 2, 1e-5);
+  EXPECT_NEAR(place(StandardJoint::kHead)[0], 0, 1e-6);
+  EXPECT_GT(place(StandardJoint::kHead)[2], 0);
   EXPECT_FLOAT_EQ(place(StandardJoint::kRhip)[0], -place(StandardJoint::kLhip)[0]);
 }
 

@@ -416,5 +416,51 @@ TEST_F(TemplatePicture, OfAComparisonMarksWhatIsNotAsAsked) {
             ErrorCode::kInvalidArgument);
 }
 
+// Below the features a row a joint, shaded by how far it is off; costs at the right of each row.
+TEST_F(TemplatePicture, OfAComparisonShowsWhatPosesCost) {
+  const FeatureSet set = MakeSet(2);
+  const std::vector<ComparedColumn> columns = {{0b01, 0b01, 0b11}, {0b01, 0b01, 0b00}};
+  const ComparedCosts costs = {
+      .features = {0.0125, 0},
+      .joints = {{.joint = StandardJoint::kRwrist, .cost = 0.0417, .off = {0, 1}},
+                 {.joint = StandardJoint::kHead, .cost = 0.25, .off = {2, 9}}}};
+  DrawComparison(columns, 30, set, "why", File("p.png"), Overwrite::kNo, costs);
+  DrawComparison(columns, 30, set, "why", File("p.svg"), Overwrite::kNo, costs);
+  const std::string svg = test::ReadText(File("p.svg"));
+  for (const char* text : {"rwrist", "head", "poses", "0.0125", "0.0417", "0.2500", "1 spread off",
+                           "cost of features 0.0125 and of poses 0.2917"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+  EXPECT_EQ(svg.find("0.0000"), std::string::npos);  // Rows that cost nothing say nothing.
+  const std::vector<SvgElement> cells = SvgReader(svg).Named("rect", "cells");
+  std::set<double> tops;
+  double left = 1e9, right = 0;
+  for (const SvgElement& cell : cells) {
+    tops.insert(cell.Number("y"));
+    left = std::min(left, cell.Number("x"));
+    right = std::max(right, cell.Number("x") + cell.Number("width"));
+  }
+  ASSERT_EQ(tops.size(), 6);  // Two features, each asked and found, and two joints.
+  const test::PngReader png(File("p.png"));
+  const auto color = [&](std::size_t row, int column) {
+    return png.At(left + (column + .5) * (right - left) / 2,
+                  *std::next(tops.begin(), static_cast<std::ptrdiff_t>(row)) + 4);
+  };
+  constexpr Color kRed = {214, 39, 40};
+  EXPECT_EQ(color(4, 0), kWhite);
+  EXPECT_EQ(color(4, 1), Mix(kWhite, kRed, 0.5));
+  EXPECT_EQ(color(5, 0), kRed);
+  EXPECT_EQ(color(5, 1), kRed);
+  // A comparison without costs is what it was.
+  DrawComparison(columns, 30, set, "why", File("plain.svg"), Overwrite::kNo);
+  EXPECT_EQ(test::ReadText(File("plain.svg")).find("poses"), std::string::npos);
+  ComparedCosts wrong = costs;
+  wrong.joints[0].off.resize(1);
+  EXPECT_EQ(ErrorOf([&] {
+              DrawComparison(columns, 30, set, "", File("w.svg"), Overwrite::kNo, wrong);
+            }).code(),
+            ErrorCode::kInvalidArgument);
+}
+
 }  // namespace
 }  // namespace kinebase

@@ -55,5 +55,40 @@ TEST(ExplainPath, SaysWhichFeatureWasWrongWhere) {
   EXPECT_EQ(cells[1], (ExplainedCell{{1, 2}, 0b01, 0b10, .25, .5}));
 }
 
+// Two cells; the class has the first value at 1 and the second at 0, other motion a variance of ¼.
+TEST(ExplainPlaces, SaysHowManySpreadsEachValueIsOffAndWhatItCosts) {
+  PoseModel model;
+  model.mean.resize(std::size_t{2} * kPoseValues);
+  model.weight.resize(std::size_t{2} * kPoseValues);
+  model.spread.assign(kPoseValues, 0.25F);
+  model.spread[2] = 0;
+  for (const std::size_t column : {0, 1}) {
+    model.mean[column * kPoseValues] = 1;
+    model.weight[column * kPoseValues] = 0.75F;
+    model.weight[column * kPoseValues + 1] = 0.25F;
+  }
+  PoseStream poses{.rate_hz = 30};
+  poses.values.resize(std::size_t{5} * kPoseValues);
+  const auto set = [&](int column, float x, float y) {
+    poses.values[static_cast<std::size_t>(column) * kPoseValues] = x;
+    poses.values[static_cast<std::size_t>(column) * kPoseValues + 1] = y;
+  };
+  set(2, 0.5F, 0);  // Half below 1: one spread.
+  set(4, 1, 10);    // Twenty spreads above; more than two do not cost more.
+  const std::vector<ExplainedCell> path = {{.cell = {0, 2}}, {.cell = {1, 4}}};
+  const std::vector<ExplainedPlace> places = ExplainPlaces(model, path, poses);
+  ASSERT_EQ(places.size(), 2 * kPoseValues);
+  // A tenth of the mean over two cells.
+  EXPECT_EQ(places[0].off, -1);
+  EXPECT_NEAR(places[0].cost, 0.05 * 0.75, 1e-9);
+  EXPECT_EQ(places[1], (ExplainedPlace{.off = 0, .cost = 0}));
+  EXPECT_EQ(places[kPoseValues], (ExplainedPlace{.off = 0, .cost = 0}));
+  EXPECT_EQ(places[kPoseValues + 1].off, 20);
+  EXPECT_NEAR(places[kPoseValues + 1].cost, 0.05 * 0.25 * 4, 1e-9);
+  for (std::size_t i = 2; i < kPoseValues; ++i) {
+    EXPECT_EQ(places[i], (ExplainedPlace{.off = 0, .cost = 0})) << i;
+  }
+}
+
 }  // namespace
 }  // namespace kinebase::test

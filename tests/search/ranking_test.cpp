@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "kinebase/core/error.h"
 #include "search/scans.h"
@@ -183,6 +184,88 @@ TEST(Ranking, LetsTemplatesOfOtherNamesBeRivals) {
   MotionTemplate elsewhere = Template("b");
   for (double& value : elsewhere.matrix.values) value = value == 1 ? 0 : value;
   EXPECT_LT(best({Template("a"), elsewhere}).rival, 0.5);
+}
+
+TEST(Ranking, NamesTheRivalAndWhereItFits) {
+  const Recording recording(1);
+  const std::vector<RecordingStreams> recordings = {recording.streams()};
+  const std::vector<MotionTemplate> templates = {Template("a"), Template("b")};
+  const RankedHit best = RankHits(templates, recordings).at(1).at(0);
+  EXPECT_EQ(best.nearest, (Rival{.motion_template = 0, .first = 10, .last = 12, .matching = 0}));
+  EXPECT_FALSE(RankHits(std::vector{Template("a")}, recordings).at(0).at(0).nearest);
+  EXPECT_FALSE(RankHits(templates, recordings, {.rivals = false}).at(0).at(0).nearest);
+}
+
+TEST(Ranking, OfOnePathIsThatOfTheHit) {
+  const Recording recording(0.5F);
+  const std::vector<RecordingStreams> recordings = {recording.streams()};
+  const std::vector<MotionTemplate> templates = {Template("a"), Template("b")};
+  const auto hits = RankHits(templates, recordings).at(1);
+  ASSERT_GT(hits.size(), 1);
+  for (const RankedHit& hit : hits) {
+    const auto same = RankEnd(templates, 1, recording.streams(), hit.hit.last);
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->hit, hit.hit);
+    EXPECT_EQ(same->matching, hit.matching);
+    EXPECT_EQ(same->places, hit.places);
+    EXPECT_EQ(same->score, hit.score);
+    EXPECT_EQ(same->nearest, hit.nearest);
+  }
+  EXPECT_FALSE(RankEnd(templates, 1, recording.streams(), 1));  // Half of five do not fit in two.
+}
+
+TEST(Ranking, NeedsAPoseForEachColumnWhereTheTemplateLooksAtPlaces) {
+  const Recording recording(1);
+  PoseStream brief = recording.poses;
+  brief.values.resize(brief.values.size() - kPoseValues);
+  const std::vector<MotionTemplate> templates = {Template("a")};
+  for (const PoseStream* poses : {static_cast<const PoseStream*>(nullptr), &std::as_const(brief)}) {
+    const std::vector<RecordingStreams> recordings = {{&recording.features, poses}};
+    EXPECT_EQ(ErrorOf([&] { (void)RankHits(templates, recordings); }).code(), ErrorCode::kMismatch);
+    EXPECT_FALSE(RankHits(templates, recordings, {.places = false}).at(0).empty());
+  }
+}
+
+TEST(Ranking, OfATemplateOfAnyFitsEverywhereAtThePriceOfPosesAlone) {
+  MotionTemplate any = Template("any");
+  for (double& value : any.matrix.values) value = 0.5;
+  for (double& weight : any.contrast->entry_weights) weight = 0;
+  const Recording recording(1);
+  const std::vector<RecordingStreams> recordings = {recording.streams()};
+  const auto hits = RankHits(std::vector{any}, recordings).at(0);
+  ASSERT_FALSE(hits.empty());
+  for (const RankedHit& hit : hits) {
+    EXPECT_EQ(hit.matching, 0);
+    EXPECT_EQ(hit.hit.cost, 0.1 * hit.places);
+  }
+  // What fits everywhere is everybody's rival.
+  EXPECT_EQ(RankHits(std::vector{Template("a"), any}, recordings).at(0).at(0).rival, 0.5);
+}
+
+TEST(Ranking, OfARecordingShorterThanHalfTheTemplateFindsNothing) {
+  Recording recording(1);
+  for (const int columns : {0, 1, 2}) {
+    recording.features.columns.resize(static_cast<std::size_t>(columns));
+    recording.poses.values.resize(static_cast<std::size_t>(columns) * kPoseValues);
+    const std::vector<RecordingStreams> recordings = {recording.streams()};
+    EXPECT_TRUE(RankHits(std::vector{Template("a"), Template("b")}, recordings).at(0).empty());
+  }
+}
+
+TEST(Ranking, LetsTemplatesCompeteThatLookAtDisjointFeatures) {
+  // One looks at the first feature only, the other at the second, which holds nowhere.
+  MotionTemplate second = Template("second");
+  for (std::size_t i = 0; i < second.matrix.values.size(); i += 2) {
+    std::swap(second.matrix.values[i], second.matrix.values[i + 1]);
+    std::swap(second.contrast->entry_weights[i], second.contrast->entry_weights[i + 1]);
+  }
+  const Recording recording(1);
+  const std::vector<RecordingStreams> recordings = {recording.streams()};
+  const auto hits = RankHits(std::vector{Template("first"), second}, recordings);
+  EXPECT_EQ(hits[0][0].rival, 0);  // All of its entries are wrong.
+  EXPECT_EQ(hits[0][0].matching, 0);
+  ASSERT_FALSE(hits[1].empty());
+  EXPECT_EQ(hits[1][0].matching, 1);
 }
 
 TEST(Ranking, DoesNotDependOnThreads) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <filesystem>
+
 #include "kinebase/features/vocabulary.h"
 #include "support/files.h"
 #include "templates/matrices.h"
@@ -261,6 +263,33 @@ TEST(Query, TakesEveryPhraseOfTheBuiltInSets) {
       EXPECT_EQ(states, phrase.states) << phrase.text;
     }
   }
+}
+
+// Files named good_… compile; all others are refused, and the place is in the query.
+TEST(QueryCorpus, CompilesOrIsRefusedAsItsNamesSay) {
+  int good = 0;
+  int bad = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(KINEBASE_SOURCE_DIR) / "fuzz" / "corpus" / "query")) {
+    const std::string name = entry.path().filename();
+    SCOPED_TRACE(name);
+    const std::string query = ReadText(entry.path());
+    if (name.starts_with("good_")) {
+      EXPECT_FALSE(CompileQuery(query, Bonn()).templates.empty());
+      ++good;
+      continue;
+    }
+    try {
+      (void)CompileQuery(query, Bonn());
+      ADD_FAILURE() << "was not refused";
+    } catch (const QueryError& error) {
+      EXPECT_GE(error.column(), 1);
+      EXPECT_LE(error.column(), static_cast<int>(query.size()) + 1);
+    }
+    ++bad;
+  }
+  EXPECT_GE(good, 5);
+  EXPECT_GE(bad, 10);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinebase {
@@ -25,6 +26,8 @@ struct SegmentLabel {
 // trial, label, first_frame_1based, last_frame_1based. Other columns are passed over.
 // Errors  NotFound, IoFailure; MalformedFile with the line.
 [[nodiscard]] std::vector<SegmentLabel> ReadSegmentLabels(const std::filesystem::path& path);
+[[nodiscard]] std::vector<SegmentLabel> ParseSegmentLabels(std::string_view text,
+                                                           const std::filesystem::path& path);
 
 // The recording's name as it stands in SegmentLabel::recording.
 [[nodiscard]] std::string RecordingName(const std::filesystem::path& file);

@@ -50,8 +50,8 @@ struct LabelledBatch {
   std::vector<TakeFailure> failures;
 };
 
-// Reads listed clips with their poses, in parallel.
-// Errors  Cancelled.
+// Reads listed clips with their poses, in parallel. A file that is listed twice comes once; one
+// that is listed as two classes is a failure beside, and the first counts. Errors  Cancelled.
 [[nodiscard]] LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed,
                                               const FeatureSet& features, double rate_hz,
                                               const LoadOptions& load, int threads,
@@ -88,7 +88,8 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 
 // Searches each actor's clips with templates learned from the others', and all clips with
 // `templates`, which were learned from all. With one actor the two halves of each class's clips
-// take the place of actors.
+// take the place of actors. Where nothing is left to learn a class from (one clip, one actor who
+// performs it), nothing unseen is known of it.
 //
 // templates  As LearnClasses gives them, with contrasts if a method asks for that.
 // methods    The result is for each of them.
@@ -113,7 +114,9 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 // two medians. The threshold lies a third of the way from there to the best wrong hit in any clip:
 // a library has much more motion to go wrong in than the clips of other classes. At the threshold
 // the confidence is ½. Of a class that is learned alone, wrong is the median of the
-// recordings without labels. A class without right or wrong hits keeps what it has.
+// recordings without labels. Where nothing unseen is known of a class, those that were learned from
+// decide alone, and the threshold is low. A class without right or wrong hits, or whose wrong hits
+// cost no more than its right ones, keeps what it has.
 void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates);
 
 }  // namespace kinebase

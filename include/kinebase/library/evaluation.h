@@ -33,6 +33,8 @@ class PossiblyRelevant {
   // Errors  MalformedFile.
   static PossiblyRelevant Read(const std::filesystem::path& table,
                                const std::filesystem::path& labels);
+  static PossiblyRelevant Parse(std::string_view table_text, const std::filesystem::path& table,
+                                std::string_view labels_text, const std::filesystem::path& labels);
 
   [[nodiscard]] bool MayShow(const std::string& class_name, const std::string& trial,
                              double frame) const;
@@ -141,7 +143,11 @@ struct Evaluation {
                                                 const LoadOptions& load, int threads,
                                                 const ProgressCallback& progress);
 
-// Errors  InvalidArgument: fewer than two actors (or clips of a class); Cancelled.
+// A class that only one actor performs (in protocol half: that has one clip) is nothing to learn
+// from for whoever would look for it: its results are empty, and it is in no mean. Its clips are
+// searched, and learned from as other motion, all the same.
+//
+// Errors  InvalidArgument: fewer than two actors, or no class that can be evaluated; Cancelled.
 // Cost    A learning and a search for each class, actor and method.
 [[nodiscard]] Evaluation Evaluate(const EvaluationData& data, const FeatureSet& features,
                                   const EvaluateOptions& options);
@@ -154,9 +160,11 @@ struct AnnotateEvaluation {
 
 // Protocol "annotate": long takes of all clips of the actor who is left out, in seeded random
 // order, with 2 to 10 s of distractors between them; three takes for each half of the distractors,
-// the other half being the library to learn with.
+// the other half being the library to learn with. Clips of a class that nobody else performs are
+// left out, and an actor who has no others.
 //
-// Errors  InvalidArgument: fewer than two actors or distractors; Cancelled.
+// Errors  InvalidArgument: fewer than two actors or distractors, or no class that two actors
+//         perform; Cancelled.
 [[nodiscard]] std::vector<AnnotateEvaluation> EvaluateAnnotation(const EvaluationData& data,
                                                                  const FeatureSet& features,
                                                                  const EvaluateOptions& options);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinebase/core/csv.h"
@@ -91,6 +92,12 @@ struct ListedClip {
   std::string actor;      // Empty where the list does not tell.
   std::int64_t line = 0;  // Of the list.
 };
+
+// A list as it stands, `file` still empty.
+// list    For messages.
+// Errors  MalformedFile: no such table, a clip without a file or class, with its line.
+[[nodiscard]] std::vector<ListedClip> ParseClipList(std::string_view text,
+                                                    const std::filesystem::path& list);
 
 // All of them. Files are looked up by name below the list's folder, then below `folders`.
 // Errors  MalformedFile.

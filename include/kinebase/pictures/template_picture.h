@@ -8,12 +8,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kinebase/core/output_file.h"
 #include "kinebase/features/feature_matrix.h"
 #include "kinebase/features/feature_set.h"
+#include "kinebase/motion/standard_skeleton.h"
 #include "kinebase/pictures/canvas.h"
 #include "kinebase/templates/motion_template.h"
 
@@ -57,13 +60,31 @@ struct ComparedColumn {
   std::uint64_t recording = 0;   // It does.
 };
 
+// How a joint lay along the warping path.
+struct ComparedJoint {
+  StandardJoint joint = StandardJoint::kRoot;
+  double cost = 0;          // Of the hit's.
+  std::vector<double> off;  // [column] from where the class has it, in spreads; from 0.
+};
+
+// What a hit's cost is made of, where features do not all count the same and poses count too.
+struct ComparedCosts {
+  std::vector<double> features;  // [feature]
+  std::vector<ComparedJoint> joints;
+};
+
 // Each row twice: above what the template asks for (black = must not hold, white = must hold, gray
 // = any), below what the recording does, red where that is not as asked.
 //
+// With costs they stand at the right of the rows, and below the features there is a row a joint,
+// the redder the farther it is off: white = as the class has it, red = two spreads or more.
+//
 // columns  Along the warping path, `rate_hz` of them a second.
-// Errors   InvalidArgument without columns or rate; those of WritePicture.
+// Errors   InvalidArgument without columns or rate, or for costs of another number of features or
+//          columns; those of WritePicture.
 void DrawComparison(std::span<const ComparedColumn> columns, double rate_hz,
                     const FeatureSet& features, const std::string& title,
-                    const std::filesystem::path& path, Overwrite overwrite);
+                    const std::filesystem::path& path, Overwrite overwrite,
+                    const std::optional<ComparedCosts>& costs = {});
 
 }  // namespace kinebase

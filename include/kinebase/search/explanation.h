@@ -1,13 +1,14 @@
 // Why a stretch of a recording matches a template: the warping path, and along it which features
-// were as the template asks and which were not.
+// were as the template asks and which were not, and how far poses were from the class's.
 //
-// Read search/subsequence_dtw.h first.
+// Read search/subsequence_dtw.h first, and search/ranking.h for poses.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "kinebase/features/pose_stream.h"
 #include "kinebase/search/subsequence_dtw.h"
 
 namespace kinebase {
@@ -32,5 +33,21 @@ struct ExplainedCell {
 [[nodiscard]] std::vector<ExplainedCell> ExplainPath(const QuantizedTemplate& motion_template,
                                                      std::span<const std::uint64_t> columns,
                                                      int last);
+
+// One of the values of a pose in a cell of the path, where a joint lies along one axis.
+struct ExplainedPlace {
+  double off = 0;   // From the class's mean, in standard deviations of other motion; above 0 is to
+                    // the body's left (x), upwards (y) or to the front (z).
+  double cost = 0;  // What it adds to the hit's: a tenth of the hit's `places` is their sum, but
+                    // for rounding.
+
+  friend bool operator==(const ExplainedPlace&, const ExplainedPlace&) = default;
+};
+
+// [cell of the path × kPoseValues]
+// Cost  O(cells).
+[[nodiscard]] std::vector<ExplainedPlace> ExplainPlaces(const PoseModel& model,
+                                                        std::span<const ExplainedCell> path,
+                                                        const PoseStream& poses);
 
 }  // namespace kinebase

@@ -30,23 +30,45 @@ struct RankOptions {
   ProgressCallback progress;
 };
 
+// Another class's template that fits nearly the same stretch.
+struct Rival {
+  std::size_t motion_template = 0;  // Index of it.
+  int first = 0;                    // Columns, 0-based, inclusive.
+  int last = 0;
+  double matching = 0;  // Its Δ, below ½.
+
+  friend bool operator==(const Rival&, const Rival&) = default;
+};
+
 struct RankedHit {
   Hit hit;              // Its cost is Δ and places, weighed and added.
   double matching = 0;  // Δ of the template, with its entry weights.
   double places = 0;    // Mean over the path, in units of the background's variance; at most 4.
-  double rival = 0;     // ½ less Δ of the other template that fits best there; 0 where none does.
-  double score = 0;     // The cost and the rival, weighed: what hits are ordered by. Rivals do not
-                        // decide whether it is a hit, as one may search without them.
+  std::optional<Rival> nearest;  // The other class's that fits best there, if any does.
+  double rival = 0;              // ½ less its Δ; 0 where there is none.
+  double score = 0;  // The cost and the rival, weighed: what hits are ordered by. Rivals do not
+                     // decide whether it is a hit, as one may search without them.
 };
 
 // For each template its hits, by score. Templates of the same name are no rivals: they stand for
 // one class in several ways. Those without a contrast are ranked by Δ and rivals alone.
 //
-// Errors   Mismatch if a recording has another rate or feature count than a template; Cancelled.
+// Errors   Mismatch if a recording has another rate or feature count than a template, or no pose
+// for
+//          each column where a template looks at places; Cancelled.
 // Cost     O(columns · sum of template columns), and the square of a template's columns a hit.
 // Threads  The result does not depend on the thread count.
 [[nodiscard]] std::vector<std::vector<RankedHit>> RankHits(
     std::span<const MotionTemplate> templates, std::span<const RecordingStreams> recordings,
     const RankOptions& options = {});
+
+// What RankHits would give for one path, whatever it costs: that of templates[which] which ends
+// with a column of the recording; nothing where none ends.
+//
+// Errors  Mismatch, as above.
+// Cost    O(columns · sum of template columns).
+[[nodiscard]] std::optional<RankedHit> RankEnd(std::span<const MotionTemplate> templates,
+                                               std::size_t which, const RecordingStreams& recording,
+                                               int last, const RankOptions& options = {});
 
 }  // namespace kinebase

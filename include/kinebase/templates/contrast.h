@@ -19,7 +19,8 @@ namespace kinebase {
 // labelled  Clips of motion classes: how often features are one is measured on these alone, as
 //           weights from there tell classes apart better.
 // others    Any other recordings, such as the library to be searched: their poses count too.
-// Errors    InvalidArgument: no columns in `labelled`, feature counts that differ.
+// Errors    InvalidArgument: no columns in `labelled`, feature counts that differ, recordings without
+//           a pose for each column.
 [[nodiscard]] Background MeasureBackground(std::span<const RecordingStreams> labelled,
                                            std::span<const RecordingStreams> others = {});
 
@@ -28,13 +29,16 @@ namespace kinebase {
 // The weights of a column sum to 1. Each pose value weighs KL of its distribution over the
 // performances, matched to the column, against the background's, both taken for Gaussian.
 //
+// What nothing is known of has no weight: a column whose entries are all ½ costs nothing anywhere.
+//
 // Counterexamples look like the class and are not. They are matched to the columns too, and the
 // background of each column is theirs and the general one, which counts as much as one of them: so
 // what tells the class from them weighs most (docs/design/feedback.md).
 //
 // performances     Those that the template was learned from, with poses.
 // counterexamples  Stretches about as long as the class, with poses; may be empty.
-// Errors           InvalidArgument: no performances; Mismatch: other features than the template's.
+// Errors           InvalidArgument: no performances, or one without a pose for each column;
+//                  Mismatch: other features than the template's.
 [[nodiscard]] Contrast MeasureContrast(const MotionTemplate& motion_template,
                                        std::span<const RecordingStreams> performances,
                                        const Background& background,
