@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/evaluate_report.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
 #include "fmt/ranges.h"
@@ -24,6 +25,7 @@ struct EvaluateCommandOptions {
   std::string protocol = "leave-one-actor-out";
   std::vector<std::string> methods = {"mt", "mt+"};
   std::string format = "text";
+  ReportOptions report;
 };
 
 Json ToJson(const TauScores& scores) {
@@ -68,6 +70,8 @@ Json ToJson(const Evaluation& evaluation) {
                        {"macro", ToJson(result.macro)},
                        {"calibration_error", CalibrationError(bins)},
                        {"reliability", reliability},
+                       {"confusion", ConfusionToJson(result)},
+                       {"mistaken", MistakenToJson(result)},
                        {"classes", classes}});
   }
   return methods;
@@ -197,9 +201,25 @@ std::vector<Method> ChosenMethods(const std::vector<std::string>& names) {
   return methods;
 }
 
-int Run(const EvaluateCommandOptions& options) {
+// What the report begins with, as long as the watch has run.
+ReportText BeginReport(const CLI::App& command, const EvaluateCommandOptions& options,
+                       const EvaluationData& data, const Stopwatch& watch) {
+  ReportText text{.command = CommandLine(command), .facts = DataFacts(data)};
+  text.facts.emplace_back("protocol", options.protocol);
+  text.facts.emplace_back("seconds, reading included", fmt::format("{:.1f}", watch.seconds()));
+  return text;
+}
+
+int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
+  const Stopwatch watch;
+  const bool annotates = options.protocol == "annotate";
   if (options.possibly_relevant.empty() != options.labels.empty()) {
     throw UsageError("--possibly-relevant and --labels go together");
+  }
+  const bool reports = !options.report.folder.empty();
+  const Overwrite overwrite = options.common.overwrite();
+  if (reports) {
+    CheckReport(options.report, annotates, ChosenMethods(options.methods), overwrite);
   }
   const FeatureSet features = options.features.Load();
   const ProgressCallback progress = MakeProgress(options.common);
@@ -212,12 +232,20 @@ int Run(const EvaluateCommandOptions& options) {
   for (const TakeFailure& failure : data.failures) PrintError(failure.error.what());
   if (data.clips.empty()) return kCouldNot;
   const auto as = options.format == "markdown" ? &AsMarkdown : &AsText;
-  if (options.protocol == "annotate") {
+  if (annotates) {
     const auto results = EvaluateAnnotation(data, features,
                                             {.methods = ChosenMethods(options.methods),
                                              .profile = options.features.ParsedProfile(),
                                              .threads = options.common.threads,
                                              .progress = progress});
+    if (reports) {
+      ReportText text = BeginReport(command, options, data, watch);
+      text.methods_table = AsMarkdown(AccuracyRows(results));
+      text.json = {{"methods", ToJson(results)}};
+      const std::set<std::string> classes = data.ClassNames();
+      WriteReport(options.report, text, results, {classes.begin(), classes.end()}, overwrite);
+      PrintWritten(options.common, options.report.folder);
+    }
     if (options.common.json) {
       PrintJson({{"methods", ToJson(results)}});
     } else {
@@ -232,6 +260,14 @@ int Run(const EvaluateCommandOptions& options) {
        .profile = options.features.ParsedProfile(),
        .threads = options.common.threads,
        .progress = progress});
+  if (reports) {
+    ReportText text = BeginReport(command, options, data, watch);
+    text.methods_table = AsMarkdown(ScoresByMethod(evaluation));
+    text.classes_table = AsMarkdown(ScoresByClass(evaluation));
+    text.json = {{"methods", ToJson(evaluation)}};
+    WriteReport(options.report, text, evaluation, overwrite);
+    PrintWritten(options.common, options.report.folder);
+  }
   if (options.common.json) {
     PrintJson({{"methods", ToJson(evaluation)}});
   } else {
@@ -277,16 +313,26 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
       ->check(OneOf({"text", "markdown"}))
       ->capture_default_str()
       ->type_name("text|markdown");
+  command
+      ->add_option("--report", options->report.folder,
+                   "Also write a document with tables, pictures and JSON into this folder")
+      ->type_name("FOLDER");
+  command->add_option("--picture-format", options->report.picture_format, "Of its pictures")
+      ->needs("--report")
+      ->check(OneOf({"svg", "png"}))
+      ->capture_default_str()
+      ->type_name("svg|png");
   AddProfileOption(*command, options->features.profile,
                    "Features, learning and matching as the authors' toolbox (bonn) or the paper");
   AddFeatureSetOption(*command, options->features.feature_set);
   AddRateOption(*command, options->features.rate_hz);
   AddOutputOptions(*command, options->common);
   AddThreadsOption(*command, options->common);
+  AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);
   command->footer(
       "Example:\n  kinebase evaluate --clips clips.csv --distractors takes/ --methods mt,mt+");
-  command->callback([options, &exit_code] { exit_code = Run(*options); });
+  command->callback([options, command, &exit_code] { exit_code = Run(*options, *command); });
 }
 
 }  // namespace kinebase::cli

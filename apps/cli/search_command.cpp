@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/search_curve.h"
 #include "cli/search_output.h"
 #include "fmt/format.h"
 #include "kinebase/core/csv.h"
@@ -30,6 +31,7 @@ struct SearchCommandOptions {
   std::size_t most_hits = 500;
   bool mirror = false;
   std::filesystem::path curve;
+  std::filesystem::path labels;
   std::string keyframes = "none";
   std::string profile;
   std::string feature_set;
@@ -45,6 +47,18 @@ struct SearchCommandOptions {
   }
 };
 
+void CheckCurve(const SearchCommandOptions& options) {
+  const bool is_picture = IsPicture(options.curve);
+  if (!options.labels.empty() && !is_picture) {
+    throw UsageError("--labels are drawn below curves; add --curve with a file in .svg or .png");
+  }
+  if (options.curve.empty()) return;
+  if (options.templates.size() != 1 && !is_picture) {
+    throw UsageError("--curve takes one template, unless its file ends in .svg or .png");
+  }
+  CheckWritable(options.curve, options.common.overwrite());
+}
+
 void CheckUsage(const SearchCommandOptions& options) {
   if (options.common.json && options.Format() != "json") {
     throw UsageError(fmt::format("--json and --format {} both ask for standard output; leave one",
@@ -53,9 +67,7 @@ void CheckUsage(const SearchCommandOptions& options) {
   if (options.fuzzy && options.features.empty()) {
     throw UsageError("--fuzzy needs the features that count: --features rknee bent,lknee bent");
   }
-  if (options.curve.empty()) return;
-  if (options.templates.size() != 1) throw UsageError("--curve takes one template");
-  CheckWritable(options.curve, options.common.overwrite());
+  CheckCurve(options);
 }
 
 constexpr std::uint64_t kMostFaults = 1000;
@@ -86,6 +98,10 @@ struct Coverage {
 
 // The recordings with the features of one set at one rate; templates that agree in both share them.
 using FeatureKey = std::pair<std::uint64_t, double>;
+
+FeatureKey KeyOf(const Query& query) {
+  return {query.features.hash, query.motion_template.matrix.rate_hz};
+}
 
 // Those of another template file, made for the same template.
 std::vector<Keyframe> KeyframesOfFile(const std::filesystem::path& path,
@@ -190,26 +206,33 @@ std::vector<TakeHit> SearchFuzzilyIn(const Query& query, const SearchedTakes& ta
                      {.faults = options.faults, .most_hits = options.most_hits});
 }
 
-std::vector<NamedHit> SearchOne(const Query& query, SearchedTakes& takes,
-                                const SearchCommandOptions& options,
+double ThresholdOf(const MotionTemplate& motion_template, const SearchCommandOptions& options) {
+  return options.tau.value_or(motion_template.tau.value_or(kDefaultTau));
+}
+
+std::vector<NamedHit> SearchOne(std::span<const Query> queries, std::size_t index,
+                                SearchedTakes& takes, const SearchCommandOptions& options,
                                 const ProgressCallback& progress, Coverage& coverage) {
-  const SearchOptions search{
-      .tau = options.tau.value_or(query.motion_template.tau.value_or(kDefaultTau)),
-      .most_hits = options.most_hits,
-      .threads = options.common.threads,
-      .progress = progress};
+  const Query& query = queries[index];
+  const SearchOptions search{.tau = ThresholdOf(query.motion_template, options),
+                             .most_hits = options.most_hits,
+                             .threads = options.common.threads,
+                             .progress = progress};
   std::vector<NamedHit> hits;
   for (const TakeHit& hit : query.fuzzy ? SearchFuzzilyIn(query, takes, options, coverage)
                                         : SearchIn(query, takes, search, coverage)) {
-    hits.push_back({query.motion_template.name, takes.batch.takes[hit.take].path, hit});
+    hits.push_back({index, query.motion_template.name, takes.batch.takes[hit.take].path, hit});
   }
   return hits;
 }
 
 // Templates that know what sets their class off are searched together, as they are rivals.
-std::vector<NamedHit> SearchTogether(std::span<const MotionTemplate> templates,
-                                     const TakeBatch& batch, const SearchCommandOptions& options,
+std::vector<NamedHit> SearchTogether(std::span<const Query> queries,
+                                     std::span<const std::size_t> indices, const TakeBatch& batch,
+                                     const SearchCommandOptions& options,
                                      const ProgressCallback& progress) {
+  std::vector<MotionTemplate> templates;
+  for (const std::size_t index : indices) templates.push_back(queries[index].motion_template);
   const auto found = RankTakes(templates, batch.takes,
                                {.tau = options.tau,
                                 .most_hits = options.most_hits,
@@ -218,31 +241,10 @@ std::vector<NamedHit> SearchTogether(std::span<const MotionTemplate> templates,
   std::vector<NamedHit> hits;
   for (std::size_t t = 0; t < templates.size(); ++t) {
     for (const TakeHit& hit : found[t]) {
-      hits.push_back({templates[t].name, batch.takes[hit.take].path, hit});
+      hits.push_back({indices[t], templates[t].name, batch.takes[hit.take].path, hit});
     }
   }
   return hits;
-}
-
-std::string CurveTable(const Query& query, const TakeBatch& batch) {
-  std::string text = "file,column,frame,delta,start_frame\n";
-  const QuantizedTemplate quantized = Quantize(query.motion_template);
-  for (const TakeFeatures& take : batch.takes) {
-    const DeltaCurve curve = ComputeDelta(quantized, take.features.columns);
-    const std::string file = CsvField(take.path.string());
-    const auto first_frame_of = [&](int column) {
-      return FramesOfColumns(column, column, take.features.rate_hz, take.rate_hz, take.frame_count)
-                 .first +
-             1;
-    };
-    for (int column = 0; column < take.features.column_count(); ++column) {
-      const auto i = static_cast<std::size_t>(column);
-      text += fmt::format(
-          "{},{},{},{},{}\n", file, column, first_frame_of(column), ToShortestText(curve.delta[i]),
-          curve.start[i] < 0 ? std::string() : std::to_string(first_frame_of(curve.start[i])));
-    }
-  }
-  return text;
 }
 
 void Show(const std::vector<NamedHit>& hits, const TakeBatch& batch, const Coverage& coverage,
@@ -273,18 +275,40 @@ void Show(const std::vector<NamedHit>& hits, const TakeBatch& batch, const Cover
   }
 }
 
+void WriteCurve(std::span<const Query> queries, const std::map<FeatureKey, SearchedTakes>& batches,
+                const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels,
+                const SearchCommandOptions& options) {
+  std::vector<SearchedTemplate> searched;
+  for (const Query& query : queries) {
+    const MotionTemplate& motion_template = query.motion_template;
+    searched.push_back({&motion_template,
+                        &batches.at(KeyOf(query)).batch,
+                        ThresholdOf(motion_template, options),
+                        {}});
+  }
+  for (const NamedHit& named : hits) searched[named.query].hits.push_back(named.hit);
+  if (IsPicture(options.curve)) {
+    DrawCurves(searched, labels, options.curve, options.common.overwrite());
+  } else {
+    WriteFile(options.curve, CurveTable(*searched.front().motion_template, *searched.front().batch),
+              options.common.overwrite());
+  }
+}
+
 int Run(const SearchCommandOptions& options) {
   const Stopwatch watch;
   CheckUsage(options);
   std::vector<Query> queries;
   queries.reserve(options.templates.size());
   for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
+  std::vector<SegmentLabel> labels;
+  if (!options.labels.empty()) labels = ReadSegmentLabels(options.labels);
   std::vector<TakeStretch> stretches;
   for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
 
   const ProgressCallback progress = MakeProgress(options.common);
   std::map<FeatureKey, SearchedTakes> batches;
-  std::map<FeatureKey, std::vector<MotionTemplate>> together;
+  std::map<FeatureKey, std::vector<std::size_t>> together;  // Indices of queries.
   Coverage coverage;
   std::vector<NamedHit> hits;
   const auto append = [&hits](std::vector<NamedHit> found) {
@@ -293,23 +317,23 @@ int Run(const SearchCommandOptions& options) {
   };
   const bool with_poses = std::ranges::any_of(
       queries, [](const Query& query) { return query.motion_template.contrast.has_value(); });
-  for (const Query& query : queries) {
-    const double rate_hz = query.motion_template.matrix.rate_hz;
-    const FeatureKey key = {query.features.hash, rate_hz};
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const Query& query = queries[i];
+    const FeatureKey key = KeyOf(query);
     const auto [entry, is_new] = batches.try_emplace(key);
     SearchedTakes& takes = entry->second;
     if (is_new) {
-      takes.batch = LoadManyTakeFeatures(stretches, query.features, rate_hz, options.common.load,
+      takes.batch = LoadManyTakeFeatures(stretches, query.features, key.second, options.common.load,
                                          options.common.threads, progress, with_poses);
     }
     if (query.motion_template.contrast) {
-      together[key].push_back(query.motion_template);
+      together[key].push_back(i);
     } else {
-      append(SearchOne(query, takes, options, progress, coverage));
+      append(SearchOne(queries, i, takes, options, progress, coverage));
     }
   }
-  for (const auto& [key, templates] : together) {
-    append(SearchTogether(templates, batches.at(key).batch, options, progress));
+  for (const auto& [key, indices] : together) {
+    append(SearchTogether(queries, indices, batches.at(key).batch, options, progress));
   }
   std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.score; });
   if (hits.size() > options.most_hits) hits.resize(options.most_hits);
@@ -320,9 +344,8 @@ int Run(const SearchCommandOptions& options) {
   for (const TakeFeatures& take : batch.takes) {
     PrintDiagnostics(options.common, take.path, take.diagnostics);
   }
-  if (!options.curve.empty()) {
-    WriteFile(options.curve, CurveTable(queries.front(), batch), options.common.overwrite());
-  }
+  if (!options.labels.empty()) CheckLabels(labels, batch, options.labels);
+  if (!options.curve.empty()) WriteCurve(queries, batches, hits, labels, options);
   Show(hits, batch, coverage, watch.seconds(), options);
   return batch.failures.empty() ? kDone : kPartFailed;
 }
@@ -378,7 +401,12 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
       ->type_name("none|auto|FILE");
   command
       ->add_option("--curve", options->curve,
-                   "Also write the cost of the best match that ends at each column (CSV)")
+                   "Also write the cost of the best match that ends at each column: a table of "
+                   "one template (CSV), or a picture of all in .svg or .png")
+      ->type_name("FILE");
+  command
+      ->add_option("--labels", options->labels,
+                   "What is true, drawn below the curves (CSV: file,class,first_frame,last_frame)")
       ->type_name("FILE");
   command
       ->add_option("--method", options->method,

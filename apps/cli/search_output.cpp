@@ -9,7 +9,7 @@ namespace kinebase::cli {
 Json HitsToJson(const std::vector<NamedHit>& hits, const std::vector<TakeFailure>& failures,
                 std::int64_t frames, double elapsed_s) {
   Json list = Json::array();
-  for (const auto& [template_name, file, hit] : hits) {
+  for (const auto& [query, template_name, file, hit] : hits) {
     list.push_back({{"template", template_name},
                     {"file", file.string()},
                     {"first_frame", hit.first_frame},
@@ -34,7 +34,7 @@ std::string HitsToText(const std::vector<NamedHit>& hits, bool many_templates) {
   std::vector<std::string> titles = {">cost", ">frames", ">time", "file"};
   if (many_templates) titles.insert(titles.begin() + 1, "template");
   TextTable table(std::move(titles));
-  for (const auto& [template_name, file, hit] : hits) {
+  for (const auto& [query, template_name, file, hit] : hits) {
     std::vector<std::string> cells = {
         fmt::format("{:.4f}", hit.cost), fmt::format("{}-{}", hit.first_frame, hit.last_frame),
         fmt::format("{}-{}", FormatTime(hit.start_s), FormatTime(hit.end_s)), file.string()};
@@ -46,7 +46,7 @@ std::string HitsToText(const std::vector<NamedHit>& hits, bool many_templates) {
 
 std::string HitsToCsv(const std::vector<NamedHit>& hits) {
   std::string text = "template,file,first_frame,last_frame,start_s,end_s,cost,confidence,verdict\n";
-  for (const auto& [template_name, file, hit] : hits) {
+  for (const auto& [query, template_name, file, hit] : hits) {
     text += fmt::format(
         "{},{},{},{},{},{},{},{},\n", CsvField(template_name), CsvField(file.string()),
         hit.first_frame, hit.last_frame, ToShortestText(hit.start_s), ToShortestText(hit.end_s),

@@ -1,6 +1,7 @@
 // Hits as `kinebase search` shows them: JSON, a table for people, CSV.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -13,6 +14,7 @@ namespace kinebase::cli {
 
 // A hit with the names that people know it by.
 struct NamedHit {
+  std::size_t query = 0;  // Index of the template among those asked for.
   std::string template_name;
   std::filesystem::path file;
   TakeHit hit;

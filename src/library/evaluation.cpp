@@ -180,6 +180,15 @@ std::vector<std::string> ClassifyClips(std::span<const MotionTemplate> templates
   return best;
 }
 
+void AddClassified(const Stream& stream, std::span<const std::string> classified,
+                   std::vector<ClassifiedClip>& clips) {
+  for (std::size_t i = 0; i < stream.clips.size(); ++i) {
+    const LabelledClip* clip = stream.clips[i];
+    if (clip == nullptr) continue;
+    clips.push_back({clip->take.path, clip->actor, clip->class_name, classified[i]});
+  }
+}
+
 class Evaluator {
  public:
   Evaluator(const EvaluationData& data, const FeatureSet& features, const EvaluateOptions& options)
@@ -241,6 +250,7 @@ class Evaluator {
                  std::span<const std::vector<RankedHit>> hits, MethodResult& result) const {
     const std::vector<std::string> classified =
         ClassifyClips(templates, hits, stream, result.method.contrast);
+    AddClassified(stream, classified, result.clips);
     for (ClassResult& class_result : result.classes) {
       const auto found =
           std::ranges::find(templates, class_result.class_name, &MotionTemplate::name);
@@ -266,6 +276,7 @@ class Evaluator {
       scores.classified = recognised / static_cast<double>(relevant);
       class_result.by_actor[fold.actor] = scores;
       class_result.hits[fold.actor] = std::move(judged);
+      class_result.relevant[fold.actor] = relevant;
     }
   }
 

@@ -45,6 +45,20 @@ std::vector<TakeHit> SearchTakes(const FuzzyQuery& query, std::span<const TakeFe
   return ToTakeHits(SearchFuzzy(query, FeaturesOf(takes), options), takes);
 }
 
+std::vector<double> CostCurve(const MotionTemplate& motion_template, const TakeFeatures& take) {
+  const RecordingStreams recording{.features = &take.features, .poses = &take.poses};
+  const auto ranked = RankHits(std::span(&motion_template, 1), std::span(&recording, 1),
+                               {.rivals = false,
+                                .every_end = true,
+                                .most_hits = std::numeric_limits<std::size_t>::max(),
+                                .threads = 1});
+  std::vector<double> cost(take.features.columns.size(), std::numeric_limits<double>::infinity());
+  for (const RankedHit& each : ranked.front()) {
+    cost[static_cast<std::size_t>(each.hit.last)] = each.hit.cost;
+  }
+  return cost;
+}
+
 KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes, const FeatureSet& features) {
   return KeyframeIndex(FeaturesOf(takes), features.Groups());
 }

@@ -22,19 +22,22 @@ std::vector<Tick> TicksEvery(int mantissa, int exponent, double last,
   }
 }
 
-bool Fit(const std::vector<Tick>& ticks, const TextStyle& style) {
+bool FitAcross(const std::vector<Tick>& ticks, const TextStyle& style) {
   for (std::size_t i = 1; i < ticks.size(); ++i) {
     const double half_widths =
         (TextWidth(ticks[i - 1].label, style) + TextWidth(ticks[i].label, style)) / 2;
-    if (ticks[i].x - ticks[i - 1].x < half_widths + kLeastGap) return false;
+    if (ticks[i].at - ticks[i - 1].at < half_widths + kLeastGap) return false;
   }
   return true;
 }
 
-}  // namespace
+bool FitUp(const std::vector<Tick>& ticks, const TextStyle& style) {
+  return ticks.size() < 2 || ticks[0].at - ticks[1].at >= style.size + kLeastGap;
+}
 
-std::vector<Tick> RoundTicks(double last, double least_step, const TextStyle& style,
-                             const std::function<double(double)>& place) {
+template <typename Fit>
+std::vector<Tick> DensestTicks(double last, double least_step,
+                               const std::function<double(double)>& place, Fit fit) {
   // More than some 400 labels never fit, so finer steps need no try.
   const double finest = std::max(least_step, last / 400);
   int exponent = static_cast<int>(std::floor(std::log10(finest)));
@@ -42,9 +45,23 @@ std::vector<Tick> RoundTicks(double last, double least_step, const TextStyle& st
     for (const int mantissa : {1, 2, 5}) {
       if (mantissa * std::pow(10.0, exponent) < finest * (1 - 1e-9)) continue;
       std::vector<Tick> ticks = TicksEvery(mantissa, exponent, last, place);
-      if (Fit(ticks, style)) return ticks;
+      if (fit(ticks)) return ticks;
     }
   }
+}
+
+}  // namespace
+
+std::vector<Tick> RoundTicks(double last, double least_step, const TextStyle& style,
+                             const std::function<double(double)>& place) {
+  return DensestTicks(last, least_step, place,
+                      [&](const std::vector<Tick>& ticks) { return FitAcross(ticks, style); });
+}
+
+std::vector<Tick> RoundTicksUp(double last, double least_step, const TextStyle& style,
+                               const std::function<double(double)>& place) {
+  return DensestTicks(last, least_step, place,
+                      [&](const std::vector<Tick>& ticks) { return FitUp(ticks, style); });
 }
 
 }  // namespace kinebase::internal

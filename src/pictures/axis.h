@@ -10,7 +10,7 @@
 namespace kinebase::internal {
 
 struct Tick {
-  double x = 0;  // Pixels.
+  double at = 0;  // Pixels along the axis.
   std::string label;
 };
 
@@ -21,5 +21,10 @@ struct Tick {
 // place       Pixels of a value; grows with it.
 [[nodiscard]] std::vector<Tick> RoundTicks(double last, double least_step, const TextStyle& style,
                                            const std::function<double(double)>& place);
+
+// The same for an axis that goes up: `place` shrinks as the value grows, labels stand one above the
+// other.
+[[nodiscard]] std::vector<Tick> RoundTicksUp(double last, double least_step, const TextStyle& style,
+                                             const std::function<double(double)>& place);
 
 }  // namespace kinebase::internal

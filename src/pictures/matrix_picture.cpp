@@ -208,10 +208,10 @@ void DrawTicks(Canvas& canvas, std::span<const Tick> ticks, double top, double l
   TextStyle style = kTickStyle;
   style.align = TextAlign::kCenter;
   for (const Tick& tick : ticks) {
-    const std::array<PicturePoint, 2> mark = {PicturePoint{tick.x, top},
-                                              PicturePoint{tick.x, top + 4}};
+    const std::array<PicturePoint, 2> mark = {PicturePoint{tick.at, top},
+                                              PicturePoint{tick.at, top + 4}};
     canvas.Line(mark, {.width = 0.75, .color = kFrame, .round_ends = false});
-    canvas.Text({tick.x, label_baseline}, tick.label, style);
+    canvas.Text({tick.at, label_baseline}, tick.label, style);
   }
 }
 

@@ -110,7 +110,9 @@ void PngCanvas::StrokePath(const Stroke& stroke) {
                        stroke.round_ends ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
     cairo_set_line_join(context_.get(),
                         stroke.round_ends ? CAIRO_LINE_JOIN_ROUND : CAIRO_LINE_JOIN_MITER);
+    if (stroke.dash > 0) cairo_set_dash(context_.get(), &stroke.dash, 1, 0);
     cairo_stroke_preserve(context_.get());
+    cairo_set_dash(context_.get(), nullptr, 0, 0);
   }
   cairo_new_path(context_.get());
 }

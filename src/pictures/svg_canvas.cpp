@@ -35,6 +35,7 @@ std::string StrokeAttributes(const Stroke& stroke) {
   std::string attributes = Paint("stroke", stroke.color);
   attributes += fmt::format(" stroke-width=\"{}\"", Number(stroke.width));
   if (stroke.round_ends) attributes += " stroke-linecap=\"round\" stroke-linejoin=\"round\"";
+  if (stroke.dash > 0) attributes += fmt::format(" stroke-dasharray=\"{}\"", Number(stroke.dash));
   return attributes;
 }
 

@@ -148,10 +148,10 @@ class TimelineDrawing {
     const auto ticks = internal::RoundTicks(timeline_.duration_s, 1e-3, kTick,
                                             [this](double time_s) { return Place(time_s); });
     for (const internal::Tick& tick : ticks) {
-      const std::array<PicturePoint, 2> mark = {PicturePoint{tick.x, top},
-                                                PicturePoint{tick.x, top + 4}};
+      const std::array<PicturePoint, 2> mark = {PicturePoint{tick.at, top},
+                                                PicturePoint{tick.at, top + 4}};
       canvas_.Line(mark, {.width = 0.75, .color = kFrame, .round_ends = false});
-      canvas_.Text({tick.x, top + 15}, tick.label, kTick);
+      canvas_.Text({tick.at, top + 15}, tick.label, kTick);
     }
   }
 

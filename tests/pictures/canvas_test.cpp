@@ -67,6 +67,26 @@ TEST(EncodePicture, WritesWellFormedSvgWithTextAsText) {
   EXPECT_EQ(reader.Named("svg").at(0).Number("height"), 50);
 }
 
+TEST(EncodePicture, DashesOnlyTheLinesThatAskForIt) {
+  const auto draw = [](Canvas& canvas) {
+    const Stroke dashed = {.width = 4, .round_ends = false, .dash = 10};
+    canvas.Line(std::array{PicturePoint{0, 10}, PicturePoint{200, 10}}, dashed);
+    canvas.Line(std::array{PicturePoint{0, 30}, PicturePoint{200, 30}}, {.width = 4});
+  };
+  const test::SvgReader svg(EncodePicture(PictureFormat::kSvg, kSize, draw));
+  EXPECT_EQ(svg.Named("polyline").at(0).attributes.at("stroke-dasharray"), "10");
+  EXPECT_FALSE(svg.Named("polyline").at(1).attributes.contains("stroke-dasharray"));
+  const test::TemporaryFolder folder;
+  WritePicture(folder.path() / "lines.png", kSize, Overwrite::kNo, draw);
+  const test::PngReader png(folder.path() / "lines.png");
+  const Color black = {0, 0, 0};
+  const Color white = {255, 255, 255};
+  EXPECT_EQ(png.At(5, 10), black);
+  EXPECT_EQ(png.At(15, 10), white);
+  EXPECT_EQ(png.At(25, 10), black);
+  EXPECT_EQ(png.At(15, 30), black);
+}
+
 TEST(EncodePicture, WritesPngAtTheStatedScale) {
   const std::string png = EncodePicture(PictureFormat::kPng, {200.2, 50}, DrawAll);
   EXPECT_TRUE(png.starts_with("\x89PNG\r\n\x1a\n"));

@@ -109,12 +109,22 @@ struct ClassResult {
   std::map<std::string, Scores> by_actor;  // By the actor left out; "" in protocol half.
   Scores mean;
   std::map<std::string, std::vector<JudgedHit>> hits;  // By actor, best first.
+  std::map<std::string, std::size_t> relevant;         // By actor, clips of the class.
+};
+
+// What a clip was taken for: the class whose template fits best in it.
+struct ClassifiedClip {
+  std::filesystem::path file;
+  std::string actor;
+  std::string class_name;  // What it shows.
+  std::string taken_for;   // Empty where no template fits.
 };
 
 struct MethodResult {
   Method method;
   std::vector<ClassResult> classes;
-  Scores macro;  // Mean over classes.
+  Scores macro;                       // Mean over classes.
+  std::vector<ClassifiedClip> clips;  // All that were searched.
 };
 
 // How far confidences are from what they promise: hits in ten bins of confidence.

@@ -66,4 +66,13 @@ struct RankTakesOptions {
 [[nodiscard]] KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes,
                                        const FeatureSet& features);
 
+// For each column what the best match that ends there costs, +inf where none does: Δ for a plain
+// template; where poses count, with them, as for its hits.
+//
+// take     With poses, if the template has a contrast.
+// Errors   As RankTakes.
+// Cost     Of ComputeDelta; with poses also the square of the template's columns for each column.
+[[nodiscard]] std::vector<double> CostCurve(const MotionTemplate& motion_template,
+                                            const TakeFeatures& take);
+
 }  // namespace kinebase

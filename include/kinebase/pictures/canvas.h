@@ -52,6 +52,7 @@ struct Stroke {
   double width = 1;  // 0 = none.
   Color color = {};
   bool round_ends = true;
+  double dash = 0;  // Length of dashes and of the gaps between them; 0 = one line.
 };
 
 enum class TextAlign { kLeft, kCenter, kRight };
@@ -91,6 +92,12 @@ class Canvas {
 // `text`, or its beginning and "…" where it is wider than `width`.
 [[nodiscard]] std::string ShortenText(std::string_view text, double width,
                                       const TextStyle& style = {});
+
+// A picture that is not drawn yet, for EncodePicture or WritePicture.
+struct Picture {
+  PictureSize size;
+  std::function<void(Canvas&)> draw;
+};
 
 enum class PictureFormat { kSvg, kPng };
 

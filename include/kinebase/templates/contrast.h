@@ -19,7 +19,8 @@ namespace kinebase {
 // labelled  Clips of motion classes: how often features are one is measured on these alone, as
 //           weights from there tell classes apart better.
 // others    Any other recordings, such as the library to be searched: their poses count too.
-// Errors    InvalidArgument: no columns in `labelled`, feature counts that differ, recordings without
+// Errors    InvalidArgument: no columns in `labelled`, feature counts that differ, recordings
+// without
 //           a pose for each column.
 [[nodiscard]] Background MeasureBackground(std::span<const RecordingStreams> labelled,
                                            std::span<const RecordingStreams> others = {});
