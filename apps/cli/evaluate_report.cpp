@@ -149,6 +149,7 @@ std::string Encode(const Picture& picture, const ReportOptions& options) {
 void WriteAll(const ReportOptions& options, const std::vector<ReportFile>& files,
               Overwrite overwrite) {
   std::vector<FileContents> contents;
+  contents.reserve(files.size());
   for (const ReportFile& file : files) {
     contents.push_back({options.folder / file.name, file.contents});
   }

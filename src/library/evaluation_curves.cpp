@@ -44,6 +44,7 @@ std::vector<double> InterpolatedPrecision(std::span<const JudgedHit> hits, std::
 
 std::vector<double> MeanPrecision(const ClassResult& result) {
   std::vector<std::vector<double>> curves;
+  curves.reserve(result.hits.size());
   for (const auto& [actor, hits] : result.hits) {
     curves.push_back(InterpolatedPrecision(hits, result.relevant.at(actor)));
   }
@@ -52,6 +53,7 @@ std::vector<double> MeanPrecision(const ClassResult& result) {
 
 std::vector<double> MacroPrecision(const MethodResult& result) {
   std::vector<std::vector<double>> curves;
+  curves.reserve(result.classes.size());
   for (const ClassResult& of_class : result.classes) curves.push_back(MeanPrecision(of_class));
   return MeanOf(curves);
 }

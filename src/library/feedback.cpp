@@ -238,6 +238,7 @@ void UpdateContrast(const Feedback& feedback, const ClipChoice& choice, Template
 void UpdateClips(const MotionTemplate& before, const Feedback& feedback, const ClipChoice& choice,
                  TemplateUpdate& update) {
   std::vector<TemplateClip> clips;
+  clips.reserve(choice.kept.size() + choice.added.size());
   for (const std::size_t i : choice.kept) clips.push_back(before.clips[i]);
   for (const JudgedStretch* judged : choice.added) {
     clips.push_back({.file = feedback.takes[judged->take].path.filename().string(),

@@ -64,6 +64,7 @@ std::vector<FoundMark> FindMarks(const MotionTemplate& motion_template,
                                  std::span<const fs::path> places,
                                  std::vector<TemplateMark>& unusable) {
   std::vector<FoundMark> all;
+  all.reserve(motion_template.marks.size() + marks.size());
   for (const TemplateMark& mark : motion_template.marks) all.push_back({mark, {}, {}});
   for (const ListedMark& listed : marks) all.push_back({listed.mark, {}, listed.place});
   std::vector<fs::path> names;
@@ -97,6 +98,7 @@ TakeBatch LoadAll(std::span<const TakeStretch> stretches, const MotionTemplate& 
 void LoadClips(const MotionTemplate& motion_template, std::span<const fs::path> places,
                const FeatureSet& features, const FeedbackOptions& options, Feedback& feedback) {
   std::vector<fs::path> names;
+  names.reserve(motion_template.clips.size());
   for (const TemplateClip& clip : motion_template.clips) names.emplace_back(clip.file);
   const std::vector<fs::path> files = FindNamedFiles(names, places);
   std::vector<TakeStretch> stretches;

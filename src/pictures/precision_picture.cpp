@@ -46,6 +46,7 @@ void CheckPanel(const PrecisionPanel& panel, std::size_t curve_count) {
 
 std::vector<std::string> NamesOf(const PrecisionPanel& panel) {
   std::vector<std::string> names;
+  names.reserve(panel.curves.size());
   for (const PrecisionCurve& curve : panel.curves) names.push_back(curve.name);
   return names;
 }
@@ -84,7 +85,8 @@ PictureSize PictureSizeOf(const std::vector<std::string>& names, std::size_t par
 
 PictureBox PartFrame(std::size_t index) {
   const auto column = static_cast<double>(index % kPartsInRow);
-  const auto row = static_cast<double>(index / kPartsInRow);
+  const std::size_t full_rows = index / kPartsInRow;
+  const auto row = static_cast<double>(full_rows);
   const double top = kPlotMargin + kPlotTitle + kPlotCaption + kWholeFrame.height + kPlotBottom +
                      kPartsGap + kPlotTitle;
   return {kPlotMargin + kPlotLeft + column * (kPlotLeft + kPartFrame.width + kPartGap),

@@ -128,7 +128,8 @@ Picture ReliabilityPicture(std::vector<ReliabilityPanel> panels) {
   return {size, [panels = std::move(panels), in_row](Canvas& canvas) {
             for (std::size_t i = 0; i < panels.size(); ++i) {
               const auto column = static_cast<double>(i % in_row);
-              const auto row = static_cast<double>(i / in_row);
+              const std::size_t full_rows = i / in_row;
+              const auto row = static_cast<double>(full_rows);
               DrawPanel(canvas,
                         {kPlotMargin + column * (kPanelWidth + kPanelGap),
                          kPlotMargin + row * (kPanelHeight + kPanelGap)},

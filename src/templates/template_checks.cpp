@@ -57,7 +57,7 @@ std::string ProblemOf(const Contrast& contrast, const TemplateMatrix& matrix) {
     return "entry weights of another size than the matrix";
   }
   if (!AreWeights(contrast.entry_weights)) return "an entry weight that is not finite or below 0";
-  const std::string problem = ProblemOf(contrast.places, matrix.column_count());
+  std::string problem = ProblemOf(contrast.places, matrix.column_count());
   if (!problem.empty() || !contrast.background) return problem;
   return ProblemOf(*contrast.background, matrix.feature_count);
 }
