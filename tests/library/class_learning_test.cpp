@@ -22,7 +22,8 @@ FeatureSet TwoFeatures() { return {.name = "two", .hash = 2}; }
 
 // At 120 Hz, four frames a column.
 TakeFeatures Take(const std::string& name, int columns) {
-  TakeFeatures take{.path = name + ".amc", .rate_hz = 120, .frame_count = 4 * columns};
+  TakeFeatures take{
+      .path = name + ".amc", .rate_hz = 120, .frame_count = std::int64_t{4} * columns};
   take.features = {.rate_hz = 30, .feature_count = 2};
   take.features.columns.resize(static_cast<std::size_t>(columns));
   take.poses.rate_hz = 30;
@@ -44,6 +45,7 @@ LabelledClip Clip(const std::string& class_name, const std::string& actor, int c
 
 std::vector<const LabelledClip*> Pointers(const std::vector<LabelledClip>& clips) {
   std::vector<const LabelledClip*> pointers;
+  pointers.reserve(clips.size());
   for (const LabelledClip& clip : clips) pointers.push_back(&clip);
   return pointers;
 }

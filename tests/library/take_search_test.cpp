@@ -71,7 +71,7 @@ TEST(CostCurve, OfAPlainTemplateIsDelta) {
 TEST(CostCurve, IsWhatHitsCostWherePosesCount) {
   const MotionTemplate motion_template = TemplateWithPoses();
   TakeFeatures take = OneFeatureTake(20, {{6, 12}});
-  take.poses = {.rate_hz = 30, .values = std::vector<float>(20 * kPoseValues, 0.5F)};
+  take.poses = {.rate_hz = 30, .values = std::vector<float>(std::size_t{20} * kPoseValues, 0.5F)};
   const std::vector<double> curve = CostCurve(motion_template, take);
   const DeltaCurve delta = ComputeDeltaReference(Quantize(motion_template), take.features.columns);
   ASSERT_EQ(curve.size(), 20U);

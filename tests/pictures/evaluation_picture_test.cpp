@@ -220,6 +220,7 @@ TEST(ReliabilityPicture, RefusesWhatNoShareCanBe) {
 
 TEST(EvaluationPictures, KeepTextsApartAndAreReadAsPng) {
   std::vector<PrecisionPanel> parts;
+  parts.reserve(9);
   for (int i = 0; i < 9; ++i) parts.push_back(Panel(std::string(50, 'W') + std::to_string(i)));
   std::vector<ReliabilityGroup> crowded(10, {.hits = 123456, .confidence = 0.5, .right = 0.5});
   const std::vector<Picture> pictures = {
