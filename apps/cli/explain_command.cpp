@@ -152,12 +152,7 @@ void AddExplainCommand(CLI::App& program, int& exit_code) {
                    "Picture: the template and below it the recording, .png or .svg")
       ->check(PictureFile())
       ->type_name("FILE");
-  command
-      ->add_option("--method", options->method,
-                   "mt, as in the paper; mt+, with all that a template learned so knows (default: "
-                   "the latter where it can)")
-      ->check(OneOf({"mt", "mt+"}))
-      ->type_name("mt|mt+");
+  AddMethodOption(*command, options->method);
   command->add_flag("--mirror", options->mirror, "Left and right exchanged");
   AddFeatureSetOption(*command, options->feature_set);
   AddOutputOptions(*command, options->common);

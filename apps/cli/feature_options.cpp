@@ -40,6 +40,15 @@ void AddRateOption(CLI::App& command, double& rate_hz) {
       ->capture_default_str();
 }
 
+void AddMethodOption(CLI::App& command, std::string& method) {
+  command
+      .add_option("--method", method,
+                  "mt, as in the paper; mt+, with all that a template learned so knows (default: "
+                  "the latter where it can)")
+      ->check(OneOf({"mt", "mt+"}))
+      ->type_name("mt|mt+");
+}
+
 FeatureSet FeatureSetOfTemplate(const std::filesystem::path& file,
                                 const MotionTemplate& motion_template,
                                 const std::string& feature_set) {

@@ -24,6 +24,8 @@ struct FeatureOptions {
 CLI::Option* AddProfileOption(CLI::App& command, std::string& profile, const std::string& text);
 CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set);
 void AddRateOption(CLI::App& command, double& rate_hz);
+// How much of what a template knows counts; empty: all.
+void AddMethodOption(CLI::App& command, std::string& method);
 
 // The feature set that the template in `file` needs: its own if built in, else the one that the
 // user names. Errors  NotFound, naming --feature-set; Mismatch if it is another than the template

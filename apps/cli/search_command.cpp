@@ -408,12 +408,7 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
       ->add_option("--labels", options->labels,
                    "What is true, drawn below the curves (CSV: file,class,first_frame,last_frame)")
       ->type_name("FILE");
-  command
-      ->add_option("--method", options->method,
-                   "mt, as in the paper; mt+, with all that a template learned so knows (default: "
-                   "the latter where it can)")
-      ->check(OneOf({"mt", "mt+"}))
-      ->type_name("mt|mt+");
+  AddMethodOption(*command, options->method);
   AddProfileOption(*command, options->profile, "Matching by another profile than the template's");
   AddFuzzyOptions(*command, *options);
   AddFeatureSetOption(*command, options->feature_set);

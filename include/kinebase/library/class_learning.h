@@ -51,7 +51,8 @@ struct LabelledBatch {
 };
 
 // Reads listed clips with their poses, in parallel. A file that is listed twice comes once; one
-// that is listed as two classes is a failure beside, and the first counts. Errors  Cancelled.
+// that is listed as two classes is a failure beside, and the first counts.
+// Errors  Cancelled.
 [[nodiscard]] LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed,
                                               const FeatureSet& features, double rate_hz,
                                               const LoadOptions& load, int threads,

@@ -82,6 +82,12 @@ struct TemplateUpdate {
   bool keyframes_dropped = false;  // They were of other columns.
 };
 
+struct UpdateOptions {
+  int max_rounds = 10;
+  int threads = 0;
+  ProgressCallback progress;
+};
+
 // Right hits that the template was not learned from become clips, wrong ones stop being clips, and
 // the matrix is learned again if anything changed. With a contrast wrong hits are counterexamples.
 // The threshold lies a third of the way from right to wrong marks under the new template, but never
@@ -92,11 +98,6 @@ struct TemplateUpdate {
 // Errors    InvalidArgument: nothing was judged; a mirrored template; a contrast without its
 //           background; all clips are marked wrong; Cancelled.
 // Cost      Of LearnTemplate, and a search of each marked stretch's surroundings.
-struct UpdateOptions {
-  int max_rounds = 10;
-  int threads = 0;
-  ProgressCallback progress;
-};
 [[nodiscard]] TemplateUpdate UpdateTemplate(const MotionTemplate& motion_template,
                                             const Feedback& feedback,
                                             const UpdateOptions& options = {});

@@ -43,8 +43,7 @@ struct HitExplanation {
 // templates   The first is explained, the others are its rivals.
 // take        With poses.
 // last_frame  Without: the hit that RankTakes puts first; where none costs as little as it asks,
-// the
-//             one that it would put first whatever it costs.
+//             the one that it would put first whatever it costs.
 // Errors      As above; InvalidArgument for a template without a contrast; Mismatch for a template
 //             of another rate or feature set than the first.
 // Cost        That of a search of the take with all templates.

@@ -57,7 +57,8 @@ struct RankTakesOptions {
                                                std::span<const Stretch> stretches,
                                                const SearchOptions& options = {});
 
-// SearchFuzzy, its columns turned into frames and seconds. Errors, cost  As SearchFuzzy.
+// SearchFuzzy, its columns turned into frames and seconds.
+// Errors, cost  As SearchFuzzy.
 [[nodiscard]] std::vector<TakeHit> SearchTakes(const FuzzyQuery& query,
                                                std::span<const TakeFeatures> takes,
                                                const FuzzyOptions& options = {});
