@@ -160,7 +160,7 @@ std::map<FeatureKey, TakeBatch> LoadTakes(const std::vector<fs::path>& paths,
         queries, [](const Query& each) { return each.motion_template.contrast.has_value(); });
     entry->second =
         LoadManyTakeFeatures(stretches, query.features, query.key().second, options.common.load,
-                             options.common.threads, progress, with_poses);
+                             options.common.threads, progress, {.poses = with_poses});
   }
   return batches;
 }

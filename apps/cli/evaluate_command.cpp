@@ -35,7 +35,7 @@ Json ToJson(const TauScores& scores) {
           {"f1", scores.f1}};
 }
 
-Json ToJson(const Scores& scores) {
+Json ToJson(const Scores& scores, bool has_tau) {
   Json at = Json::array();
   for (const TauScores& each : scores.at) at.push_back(ToJson(each));
   return {{"ap_strict", scores.ap_strict},
@@ -45,8 +45,18 @@ Json ToJson(const Scores& scores) {
           {"recall_in_10", scores.recall_in_10},
           {"recall_in_20", scores.recall_in_20},
           {"classified", scores.classified},
-          {"at_own", ToJson(scores.at_own)},
+          {"separation", scores.separation > 0 ? Json(scores.separation) : Json()},
+          {"at_own", has_tau ? ToJson(scores.at_own) : Json()},
           {"at", at}};
+}
+
+Json ToJson(const std::vector<ReliabilityBin>& bins) {
+  Json reliability = Json::array();
+  for (const ReliabilityBin& bin : bins) {
+    reliability.push_back(
+        {{"hits", bin.hits}, {"confidence", bin.confidence}, {"right", bin.right}});
+  }
+  return reliability;
 }
 
 Json ToJson(const Evaluation& evaluation) {
@@ -55,39 +65,50 @@ Json ToJson(const Evaluation& evaluation) {
     Json classes = Json::array();
     for (const ClassResult& each : result.classes) {
       Json actors = Json::object();
-      for (const auto& [actor, scores] : each.by_actor) actors[actor] = ToJson(scores);
-      classes.push_back({{"class", each.class_name},
-                         {"mean", each.by_actor.empty() ? Json() : ToJson(each.mean)},
-                         {"actors", actors}});
+      for (const auto& [actor, scores] : each.by_actor)
+        actors[actor] = ToJson(scores, result.has_tau);
+      classes.push_back(
+          {{"class", each.class_name},
+           {"mean", each.by_actor.empty() ? Json() : ToJson(each.mean, result.has_tau)},
+           {"actors", actors}});
     }
-    Json reliability = Json::array();
     const std::vector<ReliabilityBin> bins = MeasureReliability(result);
-    for (const ReliabilityBin& bin : bins) {
-      reliability.push_back(
-          {{"hits", bin.hits}, {"confidence", bin.confidence}, {"right", bin.right}});
-    }
-    methods.push_back({{"method", result.method.name},
-                       {"macro", ToJson(result.macro)},
-                       {"calibration_error", CalibrationError(bins)},
-                       {"reliability", reliability},
-                       {"confusion", ConfusionToJson(result)},
-                       {"mistaken", MistakenToJson(result)},
-                       {"classes", classes}});
+    methods.push_back(
+        {{"method", result.name},
+         {"macro", ToJson(result.macro, result.has_tau)},
+         {"calibration_error", result.has_confidence ? Json(CalibrationError(bins)) : Json()},
+         {"reliability", result.has_confidence ? ToJson(bins) : Json()},
+         {"confusion", ConfusionToJson(result)},
+         {"mistaken", MistakenToJson(result)},
+         {"classes", classes}});
   }
   return methods;
 }
+
+constexpr char kNone[] = "–";
 
 std::string ShortNumber(double value) { return fmt::format("{:.3f}", value); }
 
 // Rows of cells; the first row is the head.
 using Rows = std::vector<std::vector<std::string>>;
 
-// AP lenient and strict, R-precision, F1 at the class's own threshold.
+// A class's cell of a method in each column.
+std::vector<std::string> ScoreCells(const MethodResult& result, const Scores& scores) {
+  return {ShortNumber(scores.ap_lenient), ShortNumber(scores.ap_strict),
+          ShortNumber(scores.r_precision), result.has_tau ? ShortNumber(scores.at_own.f1) : kNone};
+}
+
+// AP lenient and strict, R-precision, F1 at the class's own threshold; of many methods AP alone.
 Rows ScoresByClass(const Evaluation& evaluation) {
-  Rows rows = {{"class"}};
+  constexpr std::size_t kFewMethods = 3;
+  const std::vector<std::string> measures = {"AP", "strict", "R-prec", "F1"};
+  const bool few = evaluation.methods.size() <= kFewMethods;
+  const std::size_t shown = few ? measures.size() : 1;
+  Rows rows = {{few ? "class" : "class, AP"}};
   for (const MethodResult& result : evaluation.methods) {
-    for (const char* measure : {"AP", "strict", "R-prec", "F1"}) {
-      rows.front().push_back(fmt::format("{} {}", result.method.name, measure));
+    for (std::size_t i = 0; i < shown; ++i) {
+      rows.front().push_back(few ? fmt::format("{} {}", result.name, measures[i])
+                                 : std::string(result.name));
     }
   }
   // scores_of  Null where a class could not be evaluated.
@@ -95,14 +116,9 @@ Rows ScoresByClass(const Evaluation& evaluation) {
     std::vector<std::string> row = {name};
     for (const MethodResult& result : evaluation.methods) {
       const Scores* scores = scores_of(result);
-      if (scores == nullptr) {
-        row.insert(row.end(), 4, "–");
-        continue;
-      }
-      for (const double value :
-           {scores->ap_lenient, scores->ap_strict, scores->r_precision, scores->at_own.f1}) {
-        row.push_back(ShortNumber(value));
-      }
+      std::vector<std::string> cells(measures.size(), kNone);
+      if (scores != nullptr) cells = ScoreCells(result, *scores);
+      row.insert(row.end(), cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(shown));
     }
     rows.push_back(row);
   };
@@ -119,14 +135,16 @@ Rows ScoresByClass(const Evaluation& evaluation) {
 // What concerns a method as a whole.
 Rows ScoresByMethod(const Evaluation& evaluation) {
   Rows rows = {{"method", "AP", "strict", "R-prec", "precision", "recall", "F1", "classified",
-                "calibration error"}};
+                "calibration error", "separation"}};
   for (const MethodResult& result : evaluation.methods) {
     const Scores& macro = result.macro;
-    rows.push_back({std::string(result.method.name), ShortNumber(macro.ap_lenient),
-                    ShortNumber(macro.ap_strict), ShortNumber(macro.r_precision),
-                    ShortNumber(macro.at_own.precision), ShortNumber(macro.at_own.recall),
-                    ShortNumber(macro.at_own.f1), ShortNumber(macro.classified),
-                    ShortNumber(CalibrationError(MeasureReliability(result)))});
+    const auto if_tau = [&](double value) { return result.has_tau ? ShortNumber(value) : kNone; };
+    rows.push_back(
+        {std::string(result.name), ShortNumber(macro.ap_lenient), ShortNumber(macro.ap_strict),
+         ShortNumber(macro.r_precision), if_tau(macro.at_own.precision),
+         if_tau(macro.at_own.recall), if_tau(macro.at_own.f1), ShortNumber(macro.classified),
+         result.has_confidence ? ShortNumber(CalibrationError(MeasureReliability(result))) : kNone,
+         macro.separation > 0 ? fmt::format("{:.1f}", macro.separation) : kNone});
   }
   return rows;
 }
@@ -194,11 +212,22 @@ Rows AccuracyRows(const std::vector<AnnotateEvaluation>& results) {
   return rows;
 }
 
-std::vector<Method> ChosenMethods(const std::vector<std::string>& names) {
+// What --methods names.
+struct Chosen {
   std::vector<Method> methods;
-  methods.reserve(names.size());
-  for (const std::string& name : names) methods.push_back(*FindMethod(name));
-  return methods;
+  std::vector<Baseline> baselines;
+};
+
+Chosen ChosenMethods(const std::vector<std::string>& names) {
+  Chosen chosen;
+  for (const std::string& name : names) {
+    if (const Method* method = FindMethod(name)) {
+      chosen.methods.push_back(*method);
+    } else {
+      chosen.baselines.push_back(*FindBaseline(name));
+    }
+  }
+  return chosen;
 }
 
 // What the report begins with, as long as the watch has run.
@@ -216,16 +245,21 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   if (options.possibly_relevant.empty() != options.labels.empty()) {
     throw UsageError("--possibly-relevant and --labels go together");
   }
+  const auto [methods, baselines] = ChosenMethods(options.methods);
+  if (annotates && !baselines.empty()) {
+    throw UsageError(fmt::format("--protocol annotate is for templates; '{}' gives no segments",
+                                 baselines.front().name));
+  }
   const bool reports = !options.report.folder.empty();
   const Overwrite overwrite = options.common.overwrite();
   if (reports) {
-    CheckReport(options.report, annotates, ChosenMethods(options.methods), overwrite);
+    CheckReport(options.report, annotates, options.methods, overwrite);
   }
   const FeatureSet features = options.features.Load();
   const ProgressCallback progress = MakeProgress(options.common);
-  EvaluationData data = LoadEvaluationData(options.list, options.folders, options.distractors,
+  EvaluationData data = LoadEvaluationData({options.list, options.folders, options.distractors},
                                            features, options.features.rate_hz, options.common.load,
-                                           options.common.threads, progress);
+                                           options.common.threads, progress, PartsFor(baselines));
   if (!options.possibly_relevant.empty()) {
     data.possibly_relevant = PossiblyRelevant::Read(options.possibly_relevant, options.labels);
   }
@@ -234,7 +268,7 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   const auto as = options.format == "markdown" ? &AsMarkdown : &AsText;
   if (annotates) {
     const auto results = EvaluateAnnotation(data, features,
-                                            {.methods = ChosenMethods(options.methods),
+                                            {.methods = methods,
                                              .profile = options.features.ParsedProfile(),
                                              .threads = options.common.threads,
                                              .progress = progress});
@@ -256,7 +290,8 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   const Evaluation evaluation = Evaluate(
       data, features,
       {.protocol = options.protocol == "half" ? Protocol::kHalf : Protocol::kLeaveOneActorOut,
-       .methods = ChosenMethods(options.methods),
+       .methods = methods,
+       .baselines = baselines,
        .profile = options.features.ParsedProfile(),
        .threads = options.common.threads,
        .progress = progress});
@@ -305,6 +340,7 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
       ->type_name("NAME");
   std::vector<std::string> names;
   for (const Method& method : RetrievalMethods()) names.emplace_back(method.name);
+  for (const Baseline& baseline : Baselines()) names.emplace_back(baseline.name);
   command->add_option("--methods", options->methods, "Methods, side by side")
       ->delimiter(',')
       ->check(OneOf(names))

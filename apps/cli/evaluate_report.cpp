@@ -80,7 +80,7 @@ PrecisionPanel PanelOf(const Evaluation& evaluation, std::size_t class_index) {
     std::vector<double> precision = MeanPrecision(result.classes[class_index]);
     // A class that nobody was tested on.
     if (precision.empty()) return {};
-    panel.curves.push_back({std::string(result.method.name), std::move(precision)});
+    panel.curves.push_back({std::string(result.name), std::move(precision)});
   }
   return panel;
 }
@@ -92,8 +92,7 @@ std::optional<Picture> DescribePrecision(const Evaluation& evaluation) {
     std::vector<double> precision = MacroPrecision(result);
     if (precision.empty()) return std::nullopt;
     whole.curves.push_back(
-        {fmt::format("{}, AP {:.3f}", result.method.name, result.macro.ap_lenient),
-         std::move(precision)});
+        {fmt::format("{}, AP {:.3f}", result.name, result.macro.ap_lenient), std::move(precision)});
   }
   std::vector<PrecisionPanel> parts;
   for (std::size_t i = 0; i < evaluation.methods.front().classes.size(); ++i) {
@@ -105,7 +104,7 @@ std::optional<Picture> DescribePrecision(const Evaluation& evaluation) {
 
 Picture DescribeConfusion(const MethodResult& result) {
   Confusion confusion = CountConfusion(result);
-  ConfusionCounts shown{.title = fmt::format("{}: {} of {} clips recognised", result.method.name,
+  ConfusionCounts shown{.title = fmt::format("{}: {} of {} clips recognised", result.name,
                                              confusion.right(), confusion.all()),
                         .counted = "clips",
                         .classes = std::move(confusion.classes),
@@ -131,10 +130,10 @@ Picture DescribeConfusion(const AnnotateEvaluation& result,
 Picture DescribeReliability(const Evaluation& evaluation) {
   std::vector<ReliabilityPanel> panels;
   for (const MethodResult& result : evaluation.methods) {
+    if (!result.has_confidence) continue;
     const std::vector<ReliabilityBin> bins = MeasureReliability(result);
     ReliabilityPanel& panel = panels.emplace_back();
-    panel.title =
-        fmt::format("{}: calibration error {:.3f}", result.method.name, CalibrationError(bins));
+    panel.title = fmt::format("{}: calibration error {:.3f}", result.name, CalibrationError(bins));
     for (const ReliabilityBin& bin : bins) {
       panel.groups.push_back({bin.hits, bin.confidence, bin.right});
     }
@@ -203,7 +202,7 @@ std::vector<std::pair<std::string, std::string>> DataFacts(const EvaluationData&
   return facts;
 }
 
-void CheckReport(const ReportOptions& options, bool annotates, std::span<const Method> methods,
+void CheckReport(const ReportOptions& options, bool annotates, std::span<const std::string> methods,
                  Overwrite overwrite) {
   std::error_code ignored;
   if (fs::exists(options.folder, ignored) && !fs::is_directory(options.folder, ignored)) {
@@ -215,7 +214,7 @@ void CheckReport(const ReportOptions& options, bool annotates, std::span<const M
     names.push_back(PictureName("precision", options));
     names.push_back(PictureName("reliability", options));
   }
-  for (const Method& method : methods) names.push_back(ConfusionName(method.name, options));
+  for (const std::string& method : methods) names.push_back(ConfusionName(method, options));
   for (const std::string& name : names) CheckWritable(options.folder / name, overwrite);
 }
 
@@ -235,18 +234,21 @@ void WriteReport(const ReportOptions& options, const ReportText& text, const Eva
     add("Precision over recall", PictureName("precision", options), *precision);
   }
   document += "## Classes\n\n" + text.classes_table + '\n';
-  document += "## What clips are taken for\n\nThe class whose template fits a clip best.\n\n";
+  document +=
+      "## What clips are taken for\n\nThe class whose template, or example, fits a clip best.\n\n";
   for (const MethodResult& result : evaluation.methods) {
-    add(fmt::format("Confusion of {}", result.method.name),
-        ConfusionName(result.method.name, options), DescribeConfusion(result));
+    add(fmt::format("Confusion of {}", result.name), ConfusionName(result.name, options),
+        DescribeConfusion(result));
   }
-  document += fmt::format(
-      "## Confidence\n\nHow many of the hits of a confidence are right; the diagonal is what it "
-      "promises. Groups of fewer than {} hits are faint and do not count for the calibration "
-      "error.\n\n",
-      kFewHits);
-  add("Reliability of confidences", PictureName("reliability", options),
-      DescribeReliability(evaluation));
+  if (std::ranges::any_of(evaluation.methods, &MethodResult::has_confidence)) {
+    document += fmt::format(
+        "## Confidence\n\nHow many of the hits of a confidence are right; the diagonal is what it "
+        "promises. Groups of fewer than {} hits are faint and do not count for the calibration "
+        "error.\n\n",
+        kFewHits);
+    add("Reliability of confidences", PictureName("reliability", options),
+        DescribeReliability(evaluation));
+  }
   document.pop_back();
   files.push_back({kDocument, std::move(document)});
   WriteAll(options, files, overwrite);

@@ -41,7 +41,7 @@ struct ReportText {
 
 // Asked before long work begins.
 // Errors  AlreadyExists, IoFailure: a file of the report is there, or the folder is none.
-void CheckReport(const ReportOptions& options, bool annotates, std::span<const Method> methods,
+void CheckReport(const ReportOptions& options, bool annotates, std::span<const std::string> methods,
                  Overwrite overwrite);
 
 // All files, or none.

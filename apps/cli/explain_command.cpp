@@ -68,7 +68,7 @@ Explained Explain(const ExplainOptions& options) {
   explained.quantized = Quantize(templates.front());
   explained.take =
       LoadTakeFeatures({.file = options.motion}, explained.features,
-                       templates.front().matrix.rate_hz, options.common.load, !is_plain);
+                       templates.front().matrix.rate_hz, options.common.load, {.poses = !is_plain});
   PrintDiagnostics(options.common, options.motion, explained.take.diagnostics);
   explained.explanation = is_plain ? ExplainHit(explained.quantized, explained.take, last_frame)
                                    : ExplainRankedHit(templates, explained.take, last_frame);

@@ -162,7 +162,7 @@ Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& feat
   const ProgressCallback progress = MakeProgress(options.common);
   const auto load = [&](const std::vector<TakeStretch>& stretches) {
     return LoadManyTakeFeatures(stretches, features, options.features.rate_hz, options.common.load,
-                                options.common.threads, progress, true);
+                                options.common.threads, progress, {.poses = true});
   };
   Examples examples;
   if (options.list.empty()) {

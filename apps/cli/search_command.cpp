@@ -324,7 +324,7 @@ int Run(const SearchCommandOptions& options) {
     SearchedTakes& takes = entry->second;
     if (is_new) {
       takes.batch = LoadManyTakeFeatures(stretches, query.features, key.second, options.common.load,
-                                         options.common.threads, progress, with_poses);
+                                         options.common.threads, progress, {.poses = with_poses});
     }
     if (query.motion_template.contrast) {
       together[key].push_back(i);

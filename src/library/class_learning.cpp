@@ -152,7 +152,7 @@ std::vector<MotionTemplate> ForMethod(const Method& method,
 
 LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed, const FeatureSet& features,
                                 double rate_hz, const LoadOptions& load, int threads,
-                                const ProgressCallback& progress) {
+                                const ProgressCallback& progress, const TakeParts& parts) {
   LabelledBatch batch;
   std::map<std::filesystem::path, const ListedClip*> by_file;
   std::vector<TakeStretch> stretches;
@@ -178,7 +178,7 @@ LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed, const Featur
     }
   }
   TakeBatch takes =
-      LoadManyTakeFeatures(stretches, features, rate_hz, load, threads, progress, true);
+      LoadManyTakeFeatures(stretches, features, rate_hz, load, threads, progress, parts);
   batch.failures.insert(batch.failures.end(), takes.failures.begin(), takes.failures.end());
   for (TakeFeatures& take : takes.takes) {
     const ListedClip& clip = *by_file.at(take.path);

@@ -8,13 +8,16 @@
 #include "fmt/format.h"
 #include "kinebase/core/csv.h"
 #include "kinebase/core/mapped_file.h"
+#include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/search/template_search.h"
+#include "library/class_ranking.h"
 
 namespace kinebase {
 namespace {
 
 namespace fs = std::filesystem;
+using internal::ClassRanking;
 
 // What is learned from and what is searched, as indices of clips.
 struct Fold {
@@ -52,17 +55,17 @@ std::vector<const LabelledClip*> ClipsOf(const EvaluationData& data,
 
 // What a fold searches: first its clips, then the distractors.
 struct Stream {
-  std::vector<RecordingStreams> recordings;
-  std::vector<const LabelledClip*> clips;        // [recording]; null for distractors,
-  std::vector<const TakeFeatures*> distractors;  // which are here.
+  std::vector<const TakeFeatures*> takes;
+  std::vector<RecordingStreams> recordings;  // What is searched of them.
+  std::vector<const LabelledClip*> clips;    // [take]; null for distractors.
 };
 
 Stream MakeStream(const EvaluationData& data, const Fold& fold) {
   Stream stream;
   const auto add = [&](const TakeFeatures& take, const LabelledClip* clip) {
+    stream.takes.push_back(&take);
     stream.recordings.push_back({.features = &take.features, .poses = &take.poses});
     stream.clips.push_back(clip);
-    stream.distractors.push_back(clip == nullptr ? &take : nullptr);
   };
   for (const std::size_t i : fold.test) add(data.clips[i].take, &data.clips[i]);
   for (const TakeFeatures& take : data.distractors) add(take, nullptr);
@@ -75,12 +78,13 @@ std::vector<JudgedHit> Judge(std::span<const RankedHit> hits, const std::string&
   std::vector<JudgedHit> judged;
   for (const RankedHit& ranked : hits) {
     const auto recording = static_cast<std::size_t>(ranked.hit.recording);
-    JudgedHit& result = judged.emplace_back(JudgedHit{.cost = ranked.hit.cost});
+    JudgedHit& result =
+        judged.emplace_back(JudgedHit{.cost = ranked.hit.cost, .matching = ranked.matching});
     if (const LabelledClip* clip = stream.clips[recording]) {
       result.right = clip->class_name == class_name && claimed.insert(ranked.hit.recording).second;
       continue;
     }
-    const TakeFeatures& take = *stream.distractors[recording];
+    const TakeFeatures& take = *stream.takes[recording];
     const FrameRange frames = FramesOfColumns(
         ranked.hit.first, ranked.hit.last, take.features.rate_hz, take.rate_hz, take.frame_count);
     const double middle = static_cast<double>(frames.first + frames.last) / 2 + 1;
@@ -137,6 +141,7 @@ void ForEachMeasure(Scores& a, const Scores& b, const F& f) {
   f(a.recall_in_10, b.recall_in_10);
   f(a.recall_in_20, b.recall_in_20);
   f(a.classified, b.classified);
+  f(a.separation, b.separation);
   f(a.at_own.tau, b.at_own.tau);
   f(a.at_own.precision, b.at_own.precision);
   f(a.at_own.recall, b.at_own.recall);
@@ -159,25 +164,64 @@ Scores MeanOf(std::span<const Scores> all) {
   return mean;
 }
 
-// For each clip of the stream the class whose template fits best in it: the least cost, or where
-// templates are calibrated in this, the most confidence.
-std::vector<std::string> ClassifyClips(std::span<const MotionTemplate> templates,
-                                       std::span<const std::vector<RankedHit>> hits,
-                                       const Stream& stream, bool by_confidence) {
-  std::vector<std::string> best(stream.recordings.size());
-  std::vector<double> cost(stream.recordings.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t t = 0; t < templates.size(); ++t) {
-    for (const RankedHit& ranked : hits[t]) {
+// For each clip of the stream the class whose template or example fits best in it: the least cost,
+// or where templates are calibrated in this, the most confidence.
+std::vector<std::string> ClassifyClips(std::span<const ClassRanking> rankings, const Stream& stream,
+                                       bool by_confidence) {
+  std::vector<std::string> best(stream.takes.size());
+  std::vector<double> cost(stream.takes.size(), std::numeric_limits<double>::infinity());
+  for (const ClassRanking& ranking : rankings) {
+    for (const RankedHit& ranked : ranking.hits) {
       const auto recording = static_cast<std::size_t>(ranked.hit.recording);
-      const std::optional<Calibration>& fit = templates[t].calibration;
+      const std::optional<Calibration>& fit = ranking.calibration;
       const double unlikely =
           by_confidence && fit ? fit->slope * ranked.hit.cost + fit->offset : ranked.hit.cost;
       if (unlikely >= cost[recording]) continue;
       cost[recording] = unlikely;
-      best[recording] = templates[t].name;
+      best[recording] = ranking.class_name;
     }
   }
   return best;
+}
+
+// How far right hits stand out. Müller & Röder, SCA 2006, Sect. 5.5.
+double Separation(std::span<const JudgedHit> hits, double usual_delta) {
+  constexpr std::size_t kTop = 10;
+  std::vector<double> costs;
+  std::size_t rank = 0;
+  for (const JudgedHit& hit : hits) {
+    if (hit.excused) continue;
+    if (rank++ == kTop) break;
+    if (hit.right) costs.push_back(hit.matching);
+  }
+  const std::optional<double> usual_cost = internal::Median(std::move(costs));
+  return usual_delta > 0 && usual_cost ? usual_delta / *usual_cost : 0;
+}
+
+// The rankings of templates, with Δ of each over the whole stream.
+std::vector<ClassRanking> RankTemplates(const Method& method,
+                                        std::span<const MotionTemplate> templates,
+                                        const Stream& stream, int threads) {
+  RankOptions options = method.Ranking();
+  options.most_hits = std::numeric_limits<std::size_t>::max();
+  options.threads = threads;
+  auto hits = RankHits(templates, stream.recordings, options);
+  std::vector<ClassRanking> rankings;
+  rankings.reserve(templates.size());
+  for (std::size_t t = 0; t < templates.size(); ++t) {
+    const QuantizedTemplate quantized = Quantize(templates[t]);
+    std::vector<DeltaCurve> curves(stream.takes.size());
+    ParallelFor(curves.size(), threads, "searching", {}, [&](std::size_t i) {
+      curves[i] = ComputeDelta(quantized, stream.takes[i]->features.columns);
+    });
+    rankings.push_back({.class_name = templates[t].name,
+                        .example = {},
+                        .hits = std::move(hits[t]),
+                        .usual_delta = internal::UsualDelta(curves),
+                        .tau = templates[t].tau,
+                        .calibration = templates[t].calibration});
+  }
+  return rankings;
 }
 
 void AddClassified(const Stream& stream, std::span<const std::string> classified,
@@ -196,7 +240,13 @@ class Evaluator {
 
   Evaluation Run() {
     Evaluation evaluation;
-    for (const Method& method : options_.methods) evaluation.methods.push_back({.method = method});
+    for (const Method& method : options_.methods)
+      evaluation.methods.push_back({.name = method.name});
+    for (const Baseline& baseline : options_.baselines) {
+      evaluation.methods.push_back({.name = baseline.name,
+                                    .has_tau = baseline.kind == BaselineKind::kFuzzy,
+                                    .has_confidence = false});
+    }
     for (MethodResult& result : evaluation.methods) {
       for (const std::string& name : data_.ClassNames()) {
         result.classes.push_back({.class_name = name});
@@ -229,6 +279,7 @@ class Evaluator {
     const Stream stream = MakeStream(data_, fold);
     const ClassLearningOptions learning{.learning = options_.profile,
                                         .matching = options_.profile,
+                                        .with_contrast = AnyWithContrast(),
                                         .unlabelled = stream.recordings,
                                         .threads = options_.threads};
     const std::vector<MotionTemplate> learned = LearnClasses(train, features_, learning);
@@ -238,22 +289,26 @@ class Evaluator {
       const Method& method = options_.methods[m];
       std::vector<MotionTemplate> templates = ForMethod(method, learned);
       Calibrate(evidence[m], templates);
-      RankOptions ranking = method.Ranking();
-      ranking.most_hits = std::numeric_limits<std::size_t>::max();
-      ranking.threads = options_.threads;
-      const auto hits = RankHits(templates, stream.recordings, ranking);
-      ScoreFold(fold, stream, templates, hits, evaluation.methods[m]);
+      ScoreFold(fold, stream, RankTemplates(method, templates, stream, options_.threads),
+                method.contrast, evaluation.methods[m]);
+    }
+    for (std::size_t b = 0; b < options_.baselines.size(); ++b) {
+      const auto rankings =
+          internal::RankByBaseline(options_.baselines[b], {.train = train,
+                                                           .learned = learned,
+                                                           .stream = stream.takes,
+                                                           .features = features_,
+                                                           .matching = options_.profile,
+                                                           .threads = options_.threads});
+      ScoreFold(fold, stream, rankings, false, evaluation.methods[options_.methods.size() + b]);
     }
   }
 
-  void ScoreFold(const Fold& fold, const Stream& stream, std::span<const MotionTemplate> templates,
-                 std::span<const std::vector<RankedHit>> hits, MethodResult& result) const {
-    const std::vector<std::string> classified =
-        ClassifyClips(templates, hits, stream, result.method.contrast);
+  void ScoreFold(const Fold& fold, const Stream& stream, std::span<const ClassRanking> rankings,
+                 bool by_confidence, MethodResult& result) const {
+    const std::vector<std::string> classified = ClassifyClips(rankings, stream, by_confidence);
     AddClassified(stream, classified, result.clips);
     for (ClassResult& class_result : result.classes) {
-      const auto found =
-          std::ranges::find(templates, class_result.class_name, &MotionTemplate::name);
       std::size_t relevant = 0;
       double recognised = 0;
       for (std::size_t i = 0; i < stream.clips.size(); ++i) {
@@ -262,22 +317,40 @@ class Evaluator {
         ++relevant;
         if (classified[i] == class_result.class_name) ++recognised;
       }
-      // Nothing to find, or nobody to learn from.
-      if (relevant == 0 || found == templates.end()) continue;
-      const auto& ranked = hits[static_cast<std::size_t>(found - templates.begin())];
-      const std::size_t most = std::min(options_.most_hits, ranked.size());
-      std::vector<JudgedHit> judged = Judge(std::span(ranked).first(most), class_result.class_name,
-                                            stream, data_.possibly_relevant);
-      if (found->calibration) {
-        for (JudgedHit& hit : judged) hit.confidence = Confidence(*found->calibration, hit.cost);
+      if (relevant == 0) continue;  // Nothing to find.
+      std::vector<Scores> all;
+      for (const ClassRanking& ranking : rankings) {
+        if (ranking.class_name != class_result.class_name) continue;
+        all.push_back(ScoreOne(fold, stream, ranking, relevant, class_result));
       }
-      Scores scores =
-          ScoreRanking(judged, relevant, options_.taus, found->tau.value_or(kDefaultTau));
+      if (all.empty()) continue;  // Nobody to learn from.
+      Scores& scores = class_result.by_actor[fold.actor] = MeanOf(all);
       scores.classified = recognised / static_cast<double>(relevant);
-      class_result.by_actor[fold.actor] = scores;
-      class_result.hits[fold.actor] = std::move(judged);
-      class_result.relevant[fold.actor] = relevant;
     }
+  }
+
+  Scores ScoreOne(const Fold& fold, const Stream& stream, const ClassRanking& ranking,
+                  std::size_t relevant, ClassResult& class_result) const {
+    const std::size_t most = std::min(options_.most_hits, ranking.hits.size());
+    std::vector<JudgedHit> judged = Judge(std::span(ranking.hits).first(most), ranking.class_name,
+                                          stream, data_.possibly_relevant);
+    if (ranking.calibration) {
+      for (JudgedHit& hit : judged) hit.confidence = Confidence(*ranking.calibration, hit.cost);
+    }
+    Scores scores =
+        ScoreRanking(judged, relevant, options_.taus, ranking.tau.value_or(kDefaultTau));
+    scores.separation = Separation(judged, ranking.usual_delta);
+    const std::string key =
+        ranking.example.empty()
+            ? fold.actor
+            : fmt::format("{}/{}", fold.actor, fs::path(ranking.example).filename().string());
+    class_result.hits[key] = std::move(judged);
+    class_result.relevant[key] = relevant;
+    return scores;
+  }
+
+  [[nodiscard]] bool AnyWithContrast() const {
+    return std::ranges::any_of(options_.methods, &Method::contrast);
   }
 
   // All classes have one actor, or one clip.
@@ -425,19 +498,18 @@ double CalibrationError(std::span<const ReliabilityBin> bins) {
   return hits > 0 ? error / hits : 0;
 }
 
-EvaluationData LoadEvaluationData(const fs::path& list, std::span<const fs::path> folders,
-                                  std::span<const fs::path> distractors, const FeatureSet& features,
+EvaluationData LoadEvaluationData(const EvaluationFiles& files, const FeatureSet& features,
                                   double rate_hz, const LoadOptions& load, int threads,
-                                  const ProgressCallback& progress) {
-  LabelledBatch labelled =
-      LoadLabelledClips(ReadClipList(list, folders), features, rate_hz, load, threads, progress);
+                                  const ProgressCallback& progress, const TakeParts& parts) {
+  LabelledBatch labelled = LoadLabelledClips(ReadClipList(files.list, files.folders), features,
+                                             rate_hz, load, threads, progress, parts);
   EvaluationData data{.clips = std::move(labelled.clips), .failures = std::move(labelled.failures)};
-  if (distractors.empty()) return data;
+  if (files.distractors.empty()) return data;
   std::vector<TakeStretch> stretches;
-  for (fs::path& file : FindMotionFiles(distractors))
+  for (fs::path& file : FindMotionFiles(files.distractors))
     stretches.push_back({.file = std::move(file)});
   TakeBatch others =
-      LoadManyTakeFeatures(stretches, features, rate_hz, load, threads, progress, true);
+      LoadManyTakeFeatures(stretches, features, rate_hz, load, threads, progress, parts);
   data.distractors = std::move(others.takes);
   data.failures.insert(data.failures.end(), others.failures.begin(), others.failures.end());
   return data;

@@ -92,7 +92,7 @@ TakeBatch LoadAll(std::span<const TakeStretch> stretches, const MotionTemplate& 
                   const FeatureSet& features, const FeedbackOptions& options) {
   return LoadManyTakeFeatures(stretches, features, motion_template.matrix.rate_hz, options.load,
                               options.threads, options.progress,
-                              motion_template.contrast.has_value());
+                              {.poses = motion_template.contrast.has_value()});
 }
 
 void LoadClips(const MotionTemplate& motion_template, std::span<const fs::path> places,

@@ -72,6 +72,15 @@ class FileIndex {
   std::map<std::string, fs::path> files_;
 };
 
+JointStream JointsOf(const Recording& recording, JointStreamKind kind, double rate_hz) {
+  if (!recording.has_skeleton()) {
+    throw Error(ErrorCode::kMismatch,
+                "holds markers; rotations and positions of joints that are "
+                "compared directly need a skeleton");
+  }
+  return ExtractJointStream(recording.motion, kind, rate_hz);
+}
+
 }  // namespace
 
 std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
@@ -169,7 +178,7 @@ Recording LoadStretch(const TakeStretch& stretch, const LoadOptions& options) {
 }
 
 TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
-                              double rate_hz, const LoadOptions& options, bool with_poses) {
+                              double rate_hz, const LoadOptions& options, const TakeParts& parts) {
   Recording recording = LoadStretch(stretch, options);
   TakeFeatures take{.path = stretch.file,
                     .stretch = stretch,
@@ -180,7 +189,13 @@ TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& feat
   try {
     const JointTrajectories joints = StandardJoints(recording, take.diagnostics);
     take.features = ExtractFeatures(joints, features, rate_hz);
-    if (with_poses) take.poses = ExtractPoses(joints, rate_hz);
+    if (parts.poses) take.poses = ExtractPoses(joints, rate_hz);
+    if (parts.rotations) {
+      take.rotations = JointsOf(recording, JointStreamKind::kRotations, rate_hz);
+    }
+    if (parts.positions) {
+      take.positions = JointsOf(recording, JointStreamKind::kPositions, rate_hz);
+    }
   } catch (const Error& error) {
     if (!error.place().file.empty()) throw;
     throw Error(error.code(), error.message(), {stretch.file});
@@ -190,12 +205,12 @@ TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& feat
 
 TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const FeatureSet& features,
                                double rate_hz, const LoadOptions& options, int threads,
-                               const ProgressCallback& progress, bool with_poses) {
+                               const ProgressCallback& progress, const TakeParts& parts) {
   std::vector<std::optional<TakeFeatures>> takes(stretches.size());
   std::vector<std::optional<Error>> errors(stretches.size());
   ParallelFor(stretches.size(), threads, "reading", progress, [&](std::size_t i) {
     try {
-      takes[i] = LoadTakeFeatures(stretches[i], features, rate_hz, options, with_poses);
+      takes[i] = LoadTakeFeatures(stretches[i], features, rate_hz, options, parts);
     } catch (const Error& error) {
       errors[i] = error;
     } catch (const std::bad_alloc&) {

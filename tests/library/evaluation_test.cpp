@@ -123,7 +123,7 @@ TEST(EvaluationOfRealClips, ReproducesPlainTemplatesAndPassesThem) {
   }
   std::ranges::sort(distractors);
   const FeatureSet features = LoadFeatureSet("bonn");
-  EvaluationData data = LoadEvaluationData(TestData("data/hdm05/clips.csv"), {}, distractors,
+  EvaluationData data = LoadEvaluationData({TestData("data/hdm05/clips.csv"), {}, distractors},
                                            features, 30, {}, 0, {});
   data.possibly_relevant = PossiblyRelevant::Read(cmu / "labels/possibly_relevant.csv",
                                                   cmu / "labels/frame_segments_120hz.csv");

@@ -149,8 +149,8 @@ TEST(RankedHitExplanation, AddsUpInRealRecordings) {
   const LabelledBatch batch = LoadLabelledClips(
       ReadClipList(test::TestData("data/hdm05/clips.csv"), {}), features, 30, {}, 0, {});
   std::vector<const LabelledClip*> learned_from;
-  std::vector<TakeFeatures> takes = {
-      LoadTakeFeatures({.file = test::TestData("data/cmu/86/86_01.amc")}, features, 30, {}, true)};
+  std::vector<TakeFeatures> takes = {LoadTakeFeatures(
+      {.file = test::TestData("data/cmu/86/86_01.amc")}, features, 30, {}, {.poses = true})};
   for (const LabelledClip& clip : batch.clips) {
     if (clip.actor != "bd") {
       learned_from.push_back(&clip);

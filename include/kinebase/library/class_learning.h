@@ -50,13 +50,14 @@ struct LabelledBatch {
   std::vector<TakeFailure> failures;
 };
 
-// Reads listed clips with their poses, in parallel. A file that is listed twice comes once; one
+// Reads listed clips, in parallel. A file that is listed twice comes once; one
 // that is listed as two classes is a failure beside, and the first counts.
 // Errors  Cancelled.
 [[nodiscard]] LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed,
                                               const FeatureSet& features, double rate_hz,
                                               const LoadOptions& load, int threads,
-                                              const ProgressCallback& progress);
+                                              const ProgressCallback& progress,
+                                              const TakeParts& parts = {.poses = true});
 
 struct ClassLearningOptions {
   Profile learning = Profile::kBonn;

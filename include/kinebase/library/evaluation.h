@@ -59,11 +59,35 @@ struct EvaluationData {
   [[nodiscard]] std::set<std::string> Actors() const;
 };
 
+// What templates are compared with: one example of a motion, or templates that are searched for in
+// other ways. docs/design/baselines.md.
+enum class BaselineKind {
+  kUnquantized,  // Plain templates with all their values.
+  kKeyframes,    // Plain templates, where two keyframes of their own choice are shown.
+  kFuzzy,        // The order of a plain template's features of one group.
+  kFeatures,     // RF: the features of an example.
+  kPositions,    // 3D: where its joints are.
+  kRotations,    // Q: how its joints are turned.
+};
+
+struct Baseline {
+  std::string_view name;
+  BaselineKind kind = BaselineKind::kFeatures;
+};
+
+// "mt-unquantized", "keyframes", "fuzzy", "rf", "3d", "q".
+[[nodiscard]] std::span<const Baseline> Baselines();
+[[nodiscard]] const Baseline* FindBaseline(std::string_view name);
+
+// What takes must have to be evaluated by them.
+[[nodiscard]] TakeParts PartsFor(std::span<const Baseline> baselines);
+
 enum class Protocol { kLeaveOneActorOut, kHalf };  // Of Evaluate.
 
 struct EvaluateOptions {
   Protocol protocol = Protocol::kLeaveOneActorOut;
   std::vector<Method> methods;
+  std::vector<Baseline> baselines;  // After the methods; not in protocol annotate.
   std::vector<double> taus = {0.02, 0.04, 0.06, 0.1};
   std::size_t most_hits = 500;
   Profile profile = Profile::kBonn;
@@ -74,6 +98,7 @@ struct EvaluateOptions {
 // A hit as it counts.
 struct JudgedHit {
   double cost = 0;
+  double matching = 0;  // Δ; the cost may count more.
   bool right = false;
   bool excused = false;  // In a stretch that may show the class.
   double confidence = 0;
@@ -93,7 +118,11 @@ struct Scores {
   double recall_in_5 = 0;  // Of the first 5, 10, 20 hits, lenient.
   double recall_in_10 = 0;
   double recall_in_20 = 0;
-  double classified = 0;      // Share of clips that their own class's template fits best.
+  double classified = 0;  // Share of clips that their own class's template or example fits best.
+  // Median of Δ over the whole stream, in medians of what right hits among the first 10 cost
+  // (Müller & Röder, SCA 2006, Sect. 5.5). Infinite if they cost nothing; 0 if none is right, or Δ
+  // is not known everywhere (keyframes, fuzzy).
+  double separation = 0;
   std::vector<TauScores> at;  // At each τ asked for,
   TauScores at_own;           // and at the class's own, chosen from training clips only.
 };
@@ -108,8 +137,10 @@ struct ClassResult {
   std::string class_name;
   std::map<std::string, Scores> by_actor;  // By the actor left out; "" in protocol half.
   Scores mean;
-  std::map<std::string, std::vector<JudgedHit>> hits;  // By actor, best first.
-  std::map<std::string, std::size_t> relevant;         // By actor, clips of the class.
+  // Best first, and how many clips of the class there are. By actor; where an example is looked
+  // for, by actor and the example's name, as each of them gives a ranking.
+  std::map<std::string, std::vector<JudgedHit>> hits;
+  std::map<std::string, std::size_t> relevant;
 };
 
 // What a clip was taken for: the class whose template fits best in it.
@@ -121,7 +152,9 @@ struct ClassifiedClip {
 };
 
 struct MethodResult {
-  Method method;
+  std::string_view name;       // Of a method or a baseline.
+  bool has_tau = true;         // Its classes have thresholds of their own,
+  bool has_confidence = true;  // and its hits a confidence.
   std::vector<ClassResult> classes;
   Scores macro;                       // Mean over classes.
   std::vector<ClassifiedClip> clips;  // All that were searched.
@@ -143,15 +176,19 @@ struct Evaluation {
   double stream_s = 0;  // Of all distractors.
 };
 
-// list         Clips with columns file, class, actor.
-// distractors  Files or folders.
-// Errors       Those of ReadClipList and FindMotionFiles; Cancelled.
-[[nodiscard]] EvaluationData LoadEvaluationData(const std::filesystem::path& list,
-                                                std::span<const std::filesystem::path> folders,
-                                                std::span<const std::filesystem::path> distractors,
+// What an evaluation reads.
+struct EvaluationFiles {
+  std::filesystem::path list;                      // Clips with columns file, class, actor.
+  std::vector<std::filesystem::path> folders;      // Of the list's files, beside its own.
+  std::vector<std::filesystem::path> distractors;  // Files or folders.
+};
+
+// Errors  Those of ReadClipList and FindMotionFiles; Cancelled.
+[[nodiscard]] EvaluationData LoadEvaluationData(const EvaluationFiles& files,
                                                 const FeatureSet& features, double rate_hz,
                                                 const LoadOptions& load, int threads,
-                                                const ProgressCallback& progress);
+                                                const ProgressCallback& progress,
+                                                const TakeParts& parts = {.poses = true});
 
 // A class that only one actor performs (in protocol half: that has one clip) is nothing to learn
 // from for whoever would look for it: its results are empty, and it is in no mean. Its clips are

@@ -11,6 +11,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/core/progress.h"
 #include "kinebase/features/feature_extraction.h"
+#include "kinebase/features/joint_stream.h"
 #include "kinebase/features/pose_stream.h"
 #include "kinebase/motion/motion_file.h"
 
@@ -55,16 +56,27 @@ struct TakeFeatures {
   double rate_hz = 0;  // Of the file.
   std::int64_t frame_count = 0;
   FeatureMatrix features;
-  PoseStream poses;  // At the rate of the features; empty unless asked for.
+  // At the rate of the features; empty unless asked for.
+  PoseStream poses;
+  JointStream rotations;
+  JointStream positions;
   Diagnostics diagnostics;
 };
 
-// Reads one take, or a stretch of it, and extracts its features, and its poses if asked to.
+// What to extract of a take beside its features.
+struct TakeParts {
+  bool poses = false;
+  bool rotations = false;
+  bool positions = false;
+};
+
+// Reads one take, or a stretch of it, and extracts its features, and other parts if asked to.
 // Errors  Those of LoadRecording and StandardJoints; InvalidArgument for a stretch that leaves the
-// take.
+//         take; Mismatch for rotations and positions of a skeleton that ExtractJointStream refuses,
+//         or of markers.
 [[nodiscard]] TakeFeatures LoadTakeFeatures(const TakeStretch& stretch, const FeatureSet& features,
                                             double rate_hz, const LoadOptions& options,
-                                            bool with_poses = false);
+                                            const TakeParts& parts = {});
 
 struct TakeFailure {
   std::filesystem::path path;
@@ -82,7 +94,7 @@ struct TakeBatch {
                                              const FeatureSet& features, double rate_hz,
                                              const LoadOptions& options, int threads,
                                              const ProgressCallback& progress,
-                                             bool with_poses = false);
+                                             const TakeParts& parts = {});
 
 // A row of a list of clips (columns file, class, actor, …).
 struct ListedClip {
