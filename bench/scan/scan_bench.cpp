@@ -1,5 +1,6 @@
-// One template over 210 minutes at 30 Hz: the plain kernel against the vector kernel on every
-// instruction set that this machine has. Cells are template columns × recording columns.
+// One template over 210 minutes at 30 Hz: the plain kernel against the vector kernel, and the
+// search for hits, on every instruction set that this machine has; then 64 templates. Cells are
+// template columns × recording columns.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
@@ -75,14 +76,65 @@ void RunVector(benchmark::State& state, int template_columns, std::int64_t targe
   CountCells(state, template_columns);
 }
 
+// As of a template with a contrast: every mismatch has a cost of its own.
+QuantizedTemplate MakeWeightedTemplate(int columns) {
+  std::mt19937 random(3);
+  QuantizedTemplate motion_template = MakeTemplate(columns);
+  for (QuantizedColumn& column : motion_template.columns) {
+    column.consistent = (std::uint64_t{1} << kFeatures) - 1;
+    std::vector<double> costs;
+    double sum = 0;
+    for (int feature = 0; feature < kFeatures; ++feature) {
+      sum += costs.emplace_back(static_cast<double>(random() % 1000));
+    }
+    for (const double cost : costs) motion_template.costs.push_back(cost / sum);
+  }
+  return motion_template;
+}
+
+constexpr double kTau = 0.1;
+
 // Hits and starts included.
-void RunSearch(benchmark::State& state, int template_columns, int threads) {
-  const QuantizedTemplate motion_template = MakeTemplate(template_columns);
+void RunSearch(benchmark::State& state, const QuantizedTemplate& motion_template,
+               std::int64_t target, int threads) {
+  UseDeltaTarget(target);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        SearchTemplate(motion_template, {&Recording(), 1}, {.tau = 0.1, .threads = threads}));
+        SearchTemplate(motion_template, {&Recording(), 1}, {.tau = kTau, .threads = threads}));
   }
-  CountCells(state, template_columns);
+  UseDeltaTarget(0);
+  CountCells(state, motion_template.column_count());
+}
+
+// As many as the paper's classes, 18 to 144 columns long.
+void RunManySearches(benchmark::State& state, int threads) {
+  std::vector<QuantizedTemplate> templates;
+  int columns = 0;
+  for (int i = 0; i < 64; ++i) {
+    templates.push_back(MakeTemplate(18 + 2 * i));
+    columns += templates.back().column_count();
+  }
+  for (auto _ : state) {
+    for (const QuantizedTemplate& each : templates) {
+      benchmark::DoNotOptimize(
+          SearchTemplate(each, {&Recording(), 1}, {.tau = kTau, .threads = threads}));
+    }
+  }
+  CountCells(state, columns);
+}
+
+void CheckHits(const QuantizedTemplate& motion_template) {
+  const std::vector<Hit> expected =
+      BestHits(ExtractHits(ComputeDeltaReference(motion_template, Recording().columns), kTau), 500);
+  for (const std::int64_t target : SupportedDeltaTargets()) {
+    UseDeltaTarget(target);
+    const auto actual = SearchTemplate(motion_template, {&Recording(), 1}, {.tau = kTau});
+    UseDeltaTarget(0);
+    if (actual == expected) continue;
+    std::fprintf(stderr, "%s finds other hits at K = %d\n", DeltaTargetName(target),
+                 motion_template.column_count());
+    std::exit(1);
+  }
 }
 
 void CheckThatAllAgree(int template_columns) {
@@ -112,13 +164,24 @@ void RegisterAll(int template_columns) {
     add(DeltaTargetName(target) + columns,
         [=](benchmark::State& state) { RunVector(state, template_columns, target); });
   }
-  for (const int threads : {1, 2}) {
-    benchmark::RegisterBenchmark(
-        ("search" + columns + "/threads=" + std::to_string(threads)).c_str(),
-        [=](benchmark::State& state) { RunSearch(state, template_columns, threads); })
+  const auto add_search = [&](const std::string& name, bool weighted, std::int64_t target,
+                              int threads) {
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [=](benchmark::State& state) {
+                                   RunSearch(state,
+                                             weighted ? MakeWeightedTemplate(template_columns)
+                                                      : MakeTemplate(template_columns),
+                                             target, threads);
+                                 })
         ->Unit(benchmark::kMillisecond)
         ->UseRealTime();
+  };
+  for (const std::int64_t target : SupportedDeltaTargets()) {
+    const std::string name = DeltaTargetName(target) + columns;
+    add_search("search/" + name, false, target, 1);
+    add_search("weighted/" + name, true, target, 1);
   }
+  add_search("search/two threads" + columns, false, 0, 2);
 }
 
 }  // namespace
@@ -126,9 +189,18 @@ void RegisterAll(int template_columns) {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  for (const int template_columns : {36, 106}) {
+  for (const int template_columns : {18, 36, 64, 106}) {
     kinebase::CheckThatAllAgree(template_columns);
+    kinebase::CheckHits(kinebase::MakeTemplate(template_columns));
+    kinebase::CheckHits(kinebase::MakeWeightedTemplate(template_columns));
     kinebase::RegisterAll(template_columns);
+  }
+  for (const int threads : {1, 2}) {
+    benchmark::RegisterBenchmark(
+        ("64 templates/threads=" + std::to_string(threads)).c_str(),
+        [=](benchmark::State& state) { kinebase::RunManySearches(state, threads); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
   }
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -92,6 +92,7 @@ class FilesTest(CheckTest):
 
     def test_headers_are_read_once(self):
         self.write("a.h", "// A.\n#pragma once\n")
+        self.write("kernel-inl.h", "// Included once for each instruction set.\n")
         self.write("b.h", "int b();\n")
         self.assert_findings(check_files, "b.h:1: no #pragma once")
 

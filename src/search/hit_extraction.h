@@ -20,8 +20,7 @@ void AppendCandidates(std::span<const double> delta, std::span<const std::int32_
                       double tau, std::size_t first_column, std::vector<Candidate>& candidates);
 
 // candidates  By column, all of one recording.
-// columns     Of the recording.
-[[nodiscard]] std::vector<Hit> ExtractHits(std::vector<Candidate> candidates, std::size_t columns,
-                                           int recording);
+// Cost        O(candidates · log candidates), and what each hit reserves and blanks of them.
+[[nodiscard]] std::vector<Hit> ExtractHits(std::vector<Candidate> candidates, int recording);
 
 }  // namespace kinebase::internal

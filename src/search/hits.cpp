@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "search/hit_extraction.h"
 
@@ -10,11 +11,42 @@ namespace {
 
 int CeilOfPart(int length, int divisor) { return (length + divisor - 1) / divisor; }
 
-// Calls f(element) for the columns [first, last] that exist.
-template <typename T, typename F>
-void ForRange(std::vector<T>& columns, int first, int last, const F& f) {
-  const int end = std::min(last + 1, static_cast<int>(columns.size()));
-  for (int i = std::max(first, 0); i < end; ++i) f(columns[i]);
+// A number for each of some columns, 0 at first: few columns of a recording can be hits.
+class ColumnNumbers {
+ public:
+  explicit ColumnNumbers(std::vector<int> columns) : columns_(std::move(columns)) {
+    std::ranges::sort(columns_);
+    const auto repeated = std::ranges::unique(columns_);
+    columns_.erase(repeated.begin(), repeated.end());
+    numbers_.resize(columns_.size());
+  }
+
+  // column  One of them.
+  [[nodiscard]] int At(int column) const { return numbers_[IndexFrom(column)]; }
+
+  // Those of columns from first to last that are 0 become `number`.
+  void FillFree(int first, int last, int number) {
+    for (std::size_t i = IndexFrom(first); i < columns_.size() && columns_[i] <= last; ++i) {
+      if (numbers_[i] == 0) numbers_[i] = number;
+    }
+  }
+
+ private:
+  // Of the first column that is not before this one.
+  [[nodiscard]] std::size_t IndexFrom(int column) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(columns_, column) - columns_.begin());
+  }
+
+  std::vector<int> columns_;  // Ascending.
+  std::vector<int> numbers_;
+};
+
+ColumnNumbers NumbersOf(std::span<const internal::Candidate> candidates,
+                        std::int32_t internal::Candidate::*column) {
+  std::vector<int> columns;
+  columns.reserve(candidates.size());
+  for (const internal::Candidate& candidate : candidates) columns.push_back(candidate.*column);
+  return ColumnNumbers(std::move(columns));
 }
 
 }  // namespace
@@ -29,29 +61,24 @@ void AppendCandidates(std::span<const double> delta, std::span<const std::int32_
   }
 }
 
-std::vector<Hit> ExtractHits(std::vector<Candidate> candidates, std::size_t columns,
-                             int recording) {
-  if (candidates.empty()) return {};
+std::vector<Hit> ExtractHits(std::vector<Candidate> candidates, int recording) {
   std::ranges::stable_sort(candidates, {}, &Candidate::cost);
+  // By start, the length of the hit that reserved it; by end, 1 where it is blanked.
+  ColumnNumbers reserved = NumbersOf(candidates, &Candidate::start);
+  ColumnNumbers blank = NumbersOf(candidates, &Candidate::column);
   std::vector<Hit> hits;
-  std::vector<int> reserved(columns);  // [start] length of the hit that reserved it; 0 = free.
-  std::vector<char> blank(columns);    // [end]
   for (const Candidate& candidate : candidates) {
     const int end = candidate.column;
-    if (blank[end] != 0) continue;
+    if (blank.At(end) != 0) continue;
     const int start = candidate.start;
-    if (reserved[start] == 0) {
+    if (reserved.At(start) == 0) {
       const int length = end - start + 1;
       hits.push_back({.recording = recording, .first = start, .last = end, .cost = candidate.cost});
       // Where reservations overlap, the better hit's stays.
-      ForRange(reserved, start - CeilOfPart(length, 10), start + CeilOfPart(length, 2),
-               [length](int& owner) {
-                 if (owner == 0) owner = length;
-               });
+      reserved.FillFree(start - CeilOfPart(length, 10), start + CeilOfPart(length, 2), length);
     }
-    const int length = reserved[start];
-    ForRange(blank, end - CeilOfPart(length, 2), end + CeilOfPart(length, 10),
-             [](char& is_blank) { is_blank = 1; });
+    const int length = reserved.At(start);
+    blank.FillFree(end - CeilOfPart(length, 2), end + CeilOfPart(length, 10), 1);
   }
   return hits;
 }
@@ -61,7 +88,7 @@ std::vector<Hit> ExtractHits(std::vector<Candidate> candidates, std::size_t colu
 std::vector<Hit> ExtractHits(const DeltaCurve& curve, double tau, int recording) {
   std::vector<internal::Candidate> candidates;
   internal::AppendCandidates(curve.delta, curve.start, tau, 0, candidates);
-  return internal::ExtractHits(std::move(candidates), curve.delta.size(), recording);
+  return internal::ExtractHits(std::move(candidates), recording);
 }
 
 std::vector<Hit> BestHits(std::vector<Hit> hits, std::size_t most) {

@@ -4,6 +4,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/core/parallel.h"
 #include "search/hit_extraction.h"
+#include "search/kernels/filter_plan.h"
 #include "search/kernels/scan_plan.h"
 #include "search/search_checks.h"
 
@@ -79,17 +80,37 @@ std::vector<Piece> CutIntoPieces(std::span<const Stretch> stretches) {
   return pieces;
 }
 
-std::vector<Candidate> ScanPiece(const internal::ScanPlan& plan, const FeatureMatrix& recording,
+// A template ready to be scanned for, first roughly.
+struct Plans {
+  internal::FilterPlan filter;
+  internal::ScanPlan scan;
+};
+
+// The candidates of columns [begin, end) of a stretch.
+void ScanColumns(const internal::ScanPlan& plan, std::span<const std::uint64_t> columns,
+                 std::size_t begin, std::size_t end, double tau,
+                 std::vector<Candidate>& candidates) {
+  std::vector<double> delta(end - begin);
+  std::vector<std::int32_t> start(delta.size());
+  internal::ScanRange(plan, columns, begin, end, delta.data(), start.data());
+  internal::AppendCandidates(delta, start, tau, begin, candidates);
+}
+
+std::vector<Candidate> ScanPiece(const Plans& plans, const FeatureMatrix& recording,
                                  const Piece& piece, double tau) {
   const Stretch& stretch = piece.stretch;
   const auto columns = std::span(recording.columns)
                            .subspan(static_cast<std::size_t>(stretch.first),
                                     static_cast<std::size_t>(stretch.last - stretch.first) + 1);
-  std::vector<double> delta(piece.end - piece.begin);
-  std::vector<std::int32_t> start(delta.size());
-  internal::ScanRange(plan, columns, piece.begin, piece.end, delta.data(), start.data());
   std::vector<Candidate> candidates;
-  internal::AppendCandidates(delta, start, tau, piece.begin, candidates);
+  if (plans.filter.rules_out()) {
+    for (const internal::ColumnRun& run :
+         internal::FilterRange(plans.filter, columns, piece.begin, piece.end)) {
+      ScanColumns(plans.scan, columns, run.first, run.last + 1, tau, candidates);
+    }
+  } else {
+    ScanColumns(plans.scan, columns, piece.begin, piece.end, tau, candidates);
+  }
   for (Candidate& candidate : candidates) {
     candidate.column += stretch.first;
     candidate.start += stretch.first;
@@ -101,12 +122,13 @@ std::vector<Candidate> ScanPiece(const internal::ScanPlan& plan, const FeatureMa
 std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
                                  std::span<const FeatureMatrix> recordings,
                                  std::span<const Stretch> stretches, const SearchOptions& options) {
-  const internal::ScanPlan plan(motion_template);
+  const Plans plans{.filter = {motion_template, options.tau},
+                    .scan = internal::ScanPlan(motion_template)};
   const std::vector<Piece> pieces = CutIntoPieces(stretches);
   std::vector<std::vector<Candidate>> candidates(pieces.size());
   ParallelFor(pieces.size(), options.threads, "searching", options.progress, [&](std::size_t i) {
     const Piece& piece = pieces[i];
-    candidates[i] = ScanPiece(plan, recordings[piece.stretch.recording], piece, options.tau);
+    candidates[i] = ScanPiece(plans, recordings[piece.stretch.recording], piece, options.tau);
   });
 
   std::vector<Hit> hits;
@@ -116,8 +138,7 @@ std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
     for (; i < pieces.size() && pieces[i].stretch.recording == recording; ++i) {
       all.insert(all.end(), candidates[i].begin(), candidates[i].end());
     }
-    const std::vector<Hit> found =
-        internal::ExtractHits(std::move(all), recordings[recording].columns.size(), recording);
+    const std::vector<Hit> found = internal::ExtractHits(std::move(all), recording);
     hits.insert(hits.end(), found.begin(), found.end());
   }
   return BestHits(std::move(hits), options.most_hits);

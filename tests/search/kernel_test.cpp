@@ -4,19 +4,11 @@
 #include <cstring>
 
 #include "kinebase/search/subsequence_dtw.h"
+#include "search/delta_target.h"
 #include "search/scans.h"
 
 namespace kinebase::test {
 namespace {
-
-// Puts the choice of instructions back when a test is over.
-class DeltaTarget {
- public:
-  explicit DeltaTarget(std::int64_t target) { UseDeltaTarget(target); }
-  ~DeltaTarget() { UseDeltaTarget(0); }
-  DeltaTarget(const DeltaTarget&) = delete;
-  DeltaTarget& operator=(const DeltaTarget&) = delete;
-};
 
 void ExpectSameBits(const DeltaCurve& actual, const DeltaCurve& expected) {
   ASSERT_EQ(actual.delta.size(), expected.delta.size());

@@ -19,6 +19,7 @@
 #define HWY_TARGET_INCLUDE "search/kernels/scan_kernel.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "search/kernels/tile-inl.h"
 
 #ifndef KINEBASE_SCAN_KERNEL_ONCE
 #define KINEBASE_SCAN_KERNEL_ONCE
@@ -27,14 +28,10 @@ namespace kinebase::internal {
 // Two rows of costs and starts, 16 bytes a column each, and 10 nibbles: about 22 KiB of the 32 KiB
 // that common processors have.
 inline constexpr std::size_t kTile = 512;
-inline constexpr std::size_t kNibblesOfAWord = 16;
 inline constexpr std::size_t kMostLanes = 8;
 inline constexpr std::size_t kMargin = 2 * kMostLanes;
 
-// One number for each column of a tile, in stripes: with N lanes and stripes of S columns, vector v
-// holds columns v, S + v, 2S + v, … So the column before is the vector before, and neither
-// unaligned loads nor shuffles are needed. Two vectors in front of the first hold the columns
-// before each stripe.
+// One number for each column of a tile, in stripes (search/kernels/tile-inl.h).
 struct StripedNumbers {
   alignas(64) double numbers[kMargin + kTile];
 
@@ -56,13 +53,6 @@ struct LeftColumns {
   double start[2] = {-1, -1};
 };
 
-struct Workspace {
-  TileRow rows[2];
-  alignas(64) std::uint64_t words[kTile];  // Striped, as all that follows.
-  alignas(64) std::uint8_t nibbles[kNibblesOfAWord][kTile];
-  alignas(64) std::uint8_t mismatches[kTile];
-};
-
 }  // namespace kinebase::internal
 #endif  // KINEBASE_SCAN_KERNEL_ONCE
 
@@ -70,122 +60,13 @@ HWY_BEFORE_NAMESPACE();
 namespace kinebase::internal {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-// Caps keep every length a divisor of the tile, however long a machine's vectors are.
-using BytesTag = hn::CappedTag<std::uint8_t, 64>;
+// The cap keeps its length a divisor of the tile, however long a machine's vectors are.
 using DoublesTag = hn::CappedTag<double, kMostLanes>;
 
-// How the columns of a tile lie in vectors.
-struct Stripes {
-  explicit Stripes(std::size_t columns)
-      : count(columns),
-        lanes(hn::Lanes(DoublesTag())),
-        length(std::max<std::size_t>((columns + lanes - 1) / lanes, 2)) {}
-
-  [[nodiscard]] std::size_t padded_count() const { return lanes * length; }
-
-  std::size_t count;  // Columns of the tile.
-  std::size_t lanes;
-  std::size_t
-      length;  // Vectors; at least 2, so that both columns before a stripe are in one other.
+struct Workspace {
+  TileRow rows[2];
+  TileFeatures<kTile> features;
 };
-
-void StripeWords(const std::uint64_t* HWY_RESTRICT columns, const Stripes& stripes,
-                 Workspace& work) {
-  for (std::size_t lane = 0; lane < stripes.lanes; ++lane) {
-    const std::size_t first = std::min(stripes.count, lane * stripes.length);
-    const std::size_t count = std::min(stripes.count - first, stripes.length);
-    for (std::size_t v = 0; v < count; ++v) {
-      work.words[v * stripes.lanes + lane] = columns[first + v];
-    }
-  }
-}
-
-#if HWY_TARGET == HWY_SCALAR
-void SplitIntoNibbles(std::size_t count, Workspace& work) {
-  for (std::size_t nibble = 0; nibble < kNibblesOfAWord; ++nibble) {
-    for (std::size_t i = 0; i < count; ++i) {
-      work.nibbles[nibble][i] = static_cast<std::uint8_t>((work.words[i] >> (4 * nibble)) & 0xF);
-    }
-  }
-}
-#else
-// Eight words at a time are transposed by bytes in three rounds of interleaving; each byte is then
-// cut in two.
-void SplitIntoNibbles(std::size_t count, Workspace& work) {
-  const hn::Full128<std::uint8_t> bytes;
-  const hn::Full128<std::uint16_t> pairs;
-  const hn::Full64<std::uint8_t> half;
-  const auto low_nibbles = hn::Set(bytes, std::uint8_t{0xF});
-  for (std::size_t i = 0; i < count; i += 8) {
-    const auto load = [&](std::size_t word) {
-      return hn::BitCast(bytes, hn::Load(hn::Full128<std::uint64_t>(), work.words + i + word));
-    };
-    const auto words01 = load(0), words23 = load(2), words45 = load(4), words67 = load(6);
-    const auto words04 = hn::InterleaveLower(bytes, words01, words45);
-    const auto words15 = hn::InterleaveUpper(bytes, words01, words45);
-    const auto words26 = hn::InterleaveLower(bytes, words23, words67);
-    const auto words37 = hn::InterleaveUpper(bytes, words23, words67);
-    const auto even_low = hn::InterleaveLower(bytes, words04, words26);
-    const auto even_high = hn::InterleaveUpper(bytes, words04, words26);
-    const auto odd_low = hn::InterleaveLower(bytes, words15, words37);
-    const auto odd_high = hn::InterleaveUpper(bytes, words15, words37);
-    // Bytes 2p and 2p + 1 of all eight words.
-    const auto store = [&](std::size_t p, hn::Vec<hn::Full128<std::uint8_t> > two_bytes) {
-      const auto low = hn::And(two_bytes, low_nibbles);
-      const auto shifted = hn::ShiftRight<4>(hn::BitCast(pairs, two_bytes));
-      const auto high = hn::And(hn::BitCast(bytes, shifted), low_nibbles);
-      hn::Store(hn::LowerHalf(half, low), half, work.nibbles[4 * p] + i);
-      hn::Store(hn::LowerHalf(half, high), half, work.nibbles[4 * p + 1] + i);
-      hn::Store(hn::UpperHalf(half, low), half, work.nibbles[4 * p + 2] + i);
-      hn::Store(hn::UpperHalf(half, high), half, work.nibbles[4 * p + 3] + i);
-    };
-    store(0, hn::InterleaveLower(bytes, even_low, odd_low));
-    store(1, hn::InterleaveUpper(bytes, even_low, odd_low));
-    store(2, hn::InterleaveLower(bytes, even_high, odd_high));
-    store(3, hn::InterleaveUpper(bytes, even_high, odd_high));
-  }
-}
-#endif  // HWY_TARGET == HWY_SCALAR
-
-#if HWY_TARGET == HWY_SCALAR
-// A vector of one byte cannot look anything up in sixteen.
-void CountMismatches(const ScanRow& row, std::size_t count, Workspace& work) {
-  std::fill_n(work.mismatches, count, std::uint8_t{0});
-  for (const NibbleTable& table : row.tables) {
-    const std::uint8_t* nibbles = work.nibbles[table.nibble];
-    for (std::size_t i = 0; i < count; ++i) {
-      work.mismatches[i] =
-          static_cast<std::uint8_t>(work.mismatches[i] + table.mismatches[nibbles[i]]);
-    }
-  }
-}
-#else
-// Four vectors at a time, so that a table is loaded once for all of them.
-void CountMismatches(const ScanRow& row, std::size_t count, Workspace& work) {
-  const BytesTag tag;
-  const std::size_t lanes = hn::Lanes(tag);
-  for (std::size_t i = 0; i < count; i += 4 * lanes) {
-    auto count0 = hn::Zero(tag);
-    auto count1 = hn::Zero(tag);
-    auto count2 = hn::Zero(tag);
-    auto count3 = hn::Zero(tag);
-    for (const NibbleTable& table : row.tables) {
-      const auto lookup = hn::LoadDup128(tag, table.mismatches.data());
-      const std::uint8_t* nibbles = work.nibbles[table.nibble] + i;
-      count0 = hn::Add(count0, hn::TableLookupBytes(lookup, hn::Load(tag, nibbles)));
-      count1 = hn::Add(count1, hn::TableLookupBytes(lookup, hn::Load(tag, nibbles + lanes)));
-      count2 = hn::Add(count2, hn::TableLookupBytes(lookup, hn::Load(tag, nibbles + 2 * lanes)));
-      count3 = hn::Add(count3, hn::TableLookupBytes(lookup, hn::Load(tag, nibbles + 3 * lanes)));
-    }
-    hn::Store(count0, tag, work.mismatches + i);
-    hn::Store(count1, tag, work.mismatches + i + lanes);
-    hn::Store(count2, tag, work.mismatches + i + 2 * lanes);
-    hn::Store(count3, tag, work.mismatches + i + 3 * lanes);
-  }
-}
-#endif  // HWY_TARGET == HWY_SCALAR
 
 // Local costs of the vector that begins at number i.
 HWY_INLINE hn::Vec<DoublesTag> LocalCosts(const Workspace& work, std::size_t i,
@@ -193,7 +74,7 @@ HWY_INLINE hn::Vec<DoublesTag> LocalCosts(const Workspace& work, std::size_t i,
   const DoublesTag tag;
   const hn::Rebind<std::int32_t, DoublesTag> ints;
   const hn::Rebind<std::uint8_t, DoublesTag> bytes;
-  const auto counts = hn::PromoteTo(ints, hn::LoadU(bytes, work.mismatches + i));
+  const auto counts = hn::PromoteTo(ints, hn::LoadU(bytes, work.features.sums + i));
   return hn::Mul(hn::PromoteTo(tag, counts), scale);
 }
 
@@ -258,22 +139,6 @@ void FillRow(const ScanRow& scan_row, const Stripes& stripes, const Workspace& w
   }
 }
 
-// Puts the last two columns of every stripe in front of the next one, and in front of the first
-// those that the tile before left; leaves the last two of a full tile for the next.
-void LinkStripes(const Stripes& stripes, StripedNumbers& row, double (&left)[2]) {
-  const DoublesTag tag;
-  const std::size_t lanes = stripes.lanes;
-  double* vectors = row.vectors();
-  double* before = vectors - 2 * lanes;
-  const double* last = vectors + (stripes.length - 2) * lanes;
-  const double next[2] = {last[lanes - 1], last[2 * lanes - 1]};
-  for (std::size_t i = 0; i < 2; ++i) {
-    hn::Store(hn::LoadU(tag, last + i * lanes - 1), tag, before + i * lanes);
-    before[i * lanes] = left[i];
-    left[i] = next[i];
-  }
-}
-
 void WriteResult(const TileRow& row, const Stripes& stripes, std::size_t from,
                  double template_columns, double* HWY_RESTRICT delta,
                  std::int32_t* HWY_RESTRICT start) {
@@ -293,14 +158,14 @@ void WriteResult(const TileRow& row, const Stripes& stripes, std::size_t from,
 const TileRow& ScanTile(const ScanPlan& plan, const std::uint64_t* columns,
                         std::size_t first_column, const Stripes& stripes, Workspace& work,
                         std::vector<LeftColumns>& left) {
-  StripeWords(columns + first_column, stripes, work);
-  SplitIntoNibbles(stripes.padded_count(), work);
+  StripeWords(columns + first_column, stripes, work.features);
+  SplitIntoNibbles(stripes.padded_count(), work.features);
   const std::vector<ScanRow>& rows = plan.rows();
   FillUnreachable(work.rows[1]);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const TileRow& one_up = work.rows[(k + 1) % 2];
     TileRow& row = work.rows[k % 2];
-    CountMismatches(rows[k], stripes.padded_count(), work);
+    SumTables(rows[k].tables, stripes.padded_count(), work.features);
     if (k == 0) {
       FillFirstRow(rows[k], first_column, stripes, work, row);
     } else if (plan.doubles_two_one()) {
@@ -308,8 +173,8 @@ const TileRow& ScanTile(const ScanPlan& plan, const std::uint64_t* columns,
     } else {
       FillRow<false>(rows[k], stripes, work, one_up, row);
     }
-    LinkStripes(stripes, row.costs, left[k].cost);
-    LinkStripes(stripes, row.starts, left[k].start);
+    LinkStripes(DoublesTag(), stripes, row.costs.vectors(), left[k].cost);
+    LinkStripes(DoublesTag(), stripes, row.starts.vectors(), left[k].start);
   }
   return work.rows[(rows.size() - 1) % 2];
 }
@@ -323,7 +188,7 @@ void ScanRangeOnTarget(const ScanPlan& plan, const std::uint64_t* columns, std::
   const auto work = std::make_unique<Workspace>();
   std::vector<LeftColumns> left(rows);
   for (std::size_t tile = begin - halo; tile < end; tile += kTile) {
-    const Stripes stripes(std::min(kTile, end - tile));
+    const Stripes stripes(std::min(kTile, end - tile), hn::Lanes(DoublesTag()));
     const TileRow& last = ScanTile(plan, columns, tile, stripes, *work, left);
     // A tile may lie in the halo altogether.
     const std::size_t from = std::min(stripes.count, begin > tile ? begin - tile : 0);

@@ -5,14 +5,12 @@
 namespace kinebase::internal {
 namespace {
 
-constexpr std::size_t kNibbles = 16;  // Of a feature word.
-
 NibbleTable MakeTable(const QuantizedColumn& column, std::size_t nibble) {
   const std::uint64_t consistent = (column.consistent >> (4 * nibble)) & 0xF;
   const std::uint64_t ones = (column.ones >> (4 * nibble)) & 0xF;
-  NibbleTable table{.mismatches = {}, .nibble = nibble};
+  NibbleTable table{.sums = {}, .nibble = nibble};
   for (std::uint64_t value = 0; value < 16; ++value) {
-    table.mismatches[value] = static_cast<std::uint8_t>(std::popcount((value ^ ones) & consistent));
+    table.sums[value] = static_cast<std::uint8_t>(std::popcount((value ^ ones) & consistent));
   }
   return table;
 }
@@ -24,10 +22,10 @@ ScanPlan::ScanPlan(const QuantizedTemplate& motion_template)
   const auto looks_at = [](const QuantizedColumn& column, std::size_t nibble) {
     return ((column.consistent >> (4 * nibble)) & 0xF) != 0;
   };
-  tables_.reserve(motion_template.columns.size() * kNibbles);  // The spans below stay valid.
+  tables_.reserve(motion_template.columns.size() * kNibblesOfAWord);  // The spans below stay valid.
   for (const QuantizedColumn& column : motion_template.columns) {
     const std::size_t first = tables_.size();
-    for (std::size_t nibble = 0; nibble < kNibbles; ++nibble) {
+    for (std::size_t nibble = 0; nibble < kNibblesOfAWord; ++nibble) {
       if (looks_at(column, nibble)) tables_.push_back(MakeTable(column, nibble));
     }
     rows_.push_back({column.scale, std::span(tables_).subspan(first)});

@@ -16,9 +16,11 @@
 
 namespace kinebase::internal {
 
+inline constexpr std::size_t kNibblesOfAWord = 16;
+
 struct NibbleTable {
-  alignas(16) std::array<std::uint8_t, 16> mismatches;  // [value of the nibble]
-  std::size_t nibble = 0;                               // Which: 0 = features 1 to 4.
+  alignas(16) std::array<std::uint8_t, 16> sums;  // [value of the nibble]
+  std::size_t nibble = 0;                         // Which: 0 = features 1 to 4.
 };
 
 struct ScanRow {
