@@ -16,6 +16,7 @@
 #include "fmt/ranges.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/templates/calibration.h"
 #include "kinebase/templates/template_file.h"
 
 namespace kinebase::cli {
@@ -30,6 +31,7 @@ struct AnnotateOptions {
   std::vector<fs::path> paths;
   std::vector<fs::path> background;
   std::optional<double> tau;
+  std::optional<double> confidence;
   std::string overlap = "none";
   std::vector<std::string> sets;  // "CLASS,CLASS".
   std::optional<double> merge_s;
@@ -86,6 +88,9 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
   if (options.tau && !options.background.empty()) {
     throw UsageError("annotate takes --tau or --background, not both");
   }
+  if (options.tau && options.confidence) {
+    throw UsageError("annotate takes --tau or --confidence, not both");
+  }
   if (!options.sets.empty() && options.overlap != "none") {
     throw UsageError("annotate takes --set or --overlap, not both");
   }
@@ -105,6 +110,11 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
   }
 }
 
+void SetThreshold(Query& query, double tau) {
+  query.search.tau = tau;
+  query.motion_template.tau = tau;
+}
+
 Query LoadQuery(const fs::path& file, std::string class_name, const AnnotateOptions& options) {
   Query query{.motion_template = ReadTemplate(file)};
   query.features = FeatureSetOfTemplate(file, query.motion_template, options.feature_set);
@@ -117,15 +127,9 @@ Query LoadQuery(const fs::path& file, std::string class_name, const AnnotateOpti
                 {file});
   }
   const MotionTemplate& learned = query.motion_template;
-  if (learned.contrast && !options.background.empty()) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "was learned with --method mt+ and has a threshold from there; leave out "
-                "--background, or give --tau",
-                {file});
-  }
+  if (options.confidence) CheckKnowsConfidence(learned, file);
   query.search.quantized = Quantize(learned);
-  query.search.tau = options.tau.value_or(learned.tau.value_or(kDefaultTau));
-  query.motion_template.tau = query.search.tau;
+  SetThreshold(query, options.tau.value_or(learned.tau.value_or(kDefaultTau)));
   return query;
 }
 
@@ -169,18 +173,29 @@ std::map<FeatureKey, TakeBatch> LoadTakes(const std::vector<fs::path>& paths,
 void ChooseThresholds(std::vector<Query>& queries, const std::map<FeatureKey, TakeBatch>& batches,
                       int threads) {
   for (Query& query : queries) {
-    std::vector<FeatureMatrix> background;
+    std::vector<RecordingStreams> background;
     for (const TakeFeatures& take : batches.at(query.key()).takes) {
-      if (take.name.class_name != query.class_name) background.push_back(take.features);
+      if (take.name.class_name == query.class_name) continue;
+      background.push_back({.features = &take.features, .poses = &take.poses});
     }
-    const auto tau = ThresholdFromBackground(query.search.quantized, background, threads);
+    std::optional<Calibration>& calibration = query.motion_template.calibration;
+    const auto tau =
+        ThresholdFromBackground(query.motion_template, background, {.threads = threads});
     if (!tau) {
       throw Error(ErrorCode::kNotFound,
                   fmt::format("no background is long enough for the template '{}' and of another "
                               "class; add recordings to --background, or give --tau",
                               query.motion_template.name));
     }
-    query.search.tau = *tau;
+    SetThreshold(query, *tau);
+    if (calibration) calibration = HalfAt(*calibration, *tau);
+  }
+}
+
+// What costs more is less sure than was asked for.
+void AskForConfidence(std::vector<Query>& queries, double confidence) {
+  for (Query& query : queries) {
+    SetThreshold(query, CostAt(*query.motion_template.calibration, confidence));
   }
 }
 
@@ -434,6 +449,7 @@ int Run(const AnnotateOptions& options) {
     }
     ChooseThresholds(queries, background, options.common.threads);
   }
+  if (options.confidence) AskForConfidence(queries, *options.confidence);
   for (const Query& query : queries) {
     annotation.thresholds.push_back(
         {query.motion_template.name, query.class_name, query.search.tau});
@@ -474,6 +490,7 @@ void AddWhatToFind(CLI::App& command, AnnotateOptions& options) {
       .add_option("--background", options.background,
                   "Recordings that show other motion: thresholds are chosen from them")
       ->type_name("PATH");
+  AddConfidenceOption(command, options.confidence);
   command
       .add_option("--overlap", options.overlap,
                   "What may happen at the same time: nothing, classes of other body parts, or all")

@@ -121,6 +121,14 @@ std::string ConfusionTable(const AnnotationAccuracy& accuracy,
   return table.ToString();
 }
 
+bool KnowsConfidence(const Annotation& annotation) {
+  return std::ranges::any_of(annotation.takes, [](const AnnotatedTake& take) {
+    return std::ranges::any_of(take.segments, [](const AnnotationCandidate& segment) {
+      return segment.confidence.has_value();
+    });
+  });
+}
+
 // As "2026-01-31T12:00:00+00:00".
 std::string Now() {
   const auto now = std::chrono::system_clock::now();
@@ -221,13 +229,23 @@ std::string ToElan(const Annotation& annotation, const AnnotatedTake& take) {
 }
 
 std::string SegmentTable(const Annotation& annotation) {
-  TextTable table({"class", ">frames", ">time", ">cost", "file"});
+  const bool with_confidence = KnowsConfidence(annotation);
+  std::vector<std::string> titles = {"class", ">frames", ">time", ">cost"};
+  if (with_confidence) titles.emplace_back(">confidence");
+  titles.emplace_back("file");
+  TextTable table(std::move(titles));
   for (const AnnotatedTake& take : annotation.takes) {
     for (const NamedSegment& segment : NamedSegments(annotation, take)) {
-      table.Add({segment.class_name, fmt::format("{}-{}", segment.first_frame, segment.last_frame),
-                 fmt::format("{}-{}", FormatTime(segment.start_s), FormatTime(segment.end_s)),
-                 segment.cost ? fmt::format("{:.4f}", *segment.cost) : std::string(),
-                 take.path.string()});
+      std::vector<std::string> cells = {
+          segment.class_name, fmt::format("{}-{}", segment.first_frame, segment.last_frame),
+          fmt::format("{}-{}", FormatTime(segment.start_s), FormatTime(segment.end_s)),
+          segment.cost ? fmt::format("{:.4f}", *segment.cost) : std::string()};
+      if (with_confidence) {
+        cells.push_back(segment.confidence ? fmt::format("{:.2f}", *segment.confidence)
+                                           : std::string());
+      }
+      cells.push_back(take.path.string());
+      table.Add(std::move(cells));
     }
   }
   return table.ToString();

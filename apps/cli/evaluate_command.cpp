@@ -23,6 +23,7 @@ struct EvaluateCommandOptions {
   std::filesystem::path possibly_relevant;
   std::filesystem::path labels;
   std::string protocol = "leave-one-actor-out";
+  std::string thresholds = "training";
   std::vector<std::string> methods = {"mt", "mt+"};
   std::string format = "text";
   ReportOptions report;
@@ -235,6 +236,7 @@ ReportText BeginReport(const CLI::App& command, const EvaluateCommandOptions& op
                        const EvaluationData& data, const Stopwatch& watch) {
   ReportText text{.command = CommandLine(command), .facts = DataFacts(data)};
   text.facts.emplace_back("protocol", options.protocol);
+  if (options.protocol == "annotate") text.facts.emplace_back("thresholds", options.thresholds);
   text.facts.emplace_back("seconds, reading included", fmt::format("{:.1f}", watch.seconds()));
   return text;
 }
@@ -249,6 +251,10 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   if (annotates && !baselines.empty()) {
     throw UsageError(fmt::format("--protocol annotate is for templates; '{}' gives no segments",
                                  baselines.front().name));
+  }
+  const bool from_background = options.thresholds == "background";
+  if (from_background && !annotates) {
+    throw UsageError("--thresholds background is for --protocol annotate");
   }
   const bool reports = !options.report.folder.empty();
   const Overwrite overwrite = options.common.overwrite();
@@ -270,6 +276,7 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
     const auto results = EvaluateAnnotation(data, features,
                                             {.methods = methods,
                                              .profile = options.features.ParsedProfile(),
+                                             .background_thresholds = from_background,
                                              .threads = options.common.threads,
                                              .progress = progress});
     if (reports) {
@@ -338,6 +345,12 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
       ->check(OneOf({"leave-one-actor-out", "half", "annotate"}))
       ->capture_default_str()
       ->type_name("NAME");
+  command
+      ->add_option("--thresholds", options->thresholds,
+                   "Where annotate's come from: training clips, or what other motion costs")
+      ->check(OneOf({"training", "background"}))
+      ->capture_default_str()
+      ->type_name("training|background");
   std::vector<std::string> names;
   for (const Method& method : RetrievalMethods()) names.emplace_back(method.name);
   for (const Baseline& baseline : Baselines()) names.emplace_back(baseline.name);

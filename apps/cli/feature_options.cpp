@@ -9,6 +9,13 @@
 #include "kinebase/features/feature_extraction.h"
 
 namespace kinebase::cli {
+namespace {
+
+// Nothing is surer than certain, and everything at least impossible: neither is a threshold.
+constexpr double kLeastConfidence = 0.001;
+constexpr double kMostConfidence = 0.999;
+
+}  // namespace
 
 FeatureSet FeatureOptions::Load() const {
   FeatureSet features = LoadFeatureSet(feature_set.empty() ? profile : feature_set);
@@ -47,6 +54,24 @@ void AddMethodOption(CLI::App& command, std::string& method) {
                   "the latter where it can)")
       ->check(OneOf({"mt", "mt+"}))
       ->type_name("mt|mt+");
+}
+
+CLI::Option* AddConfidenceOption(CLI::App& command, std::optional<double>& confidence) {
+  return command
+      .add_option("--confidence", confidence,
+                  "How sure a hit must be, from 0.001 to 0.999, of templates learned with mt+; "
+                  "0.5 is what their thresholds mean")
+      ->check(NumberBetween(kLeastConfidence, kMostConfidence))
+      ->type_name("SHARE");
+}
+
+void CheckKnowsConfidence(const MotionTemplate& motion_template,
+                          const std::filesystem::path& file) {
+  if (motion_template.calibration && motion_template.calibration->slope > 0) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              "does not know how sure its hits are; learn it with --method mt+, or give --tau "
+              "instead of --confidence",
+              {file});
 }
 
 FeatureSet FeatureSetOfTemplate(const std::filesystem::path& file,

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "kinebase/features/feature_set.h"
@@ -26,6 +27,11 @@ CLI::Option* AddFeatureSetOption(CLI::App& command, std::string& feature_set);
 void AddRateOption(CLI::App& command, double& rate_hz);
 // How much of what a template knows counts; empty: all.
 void AddMethodOption(CLI::App& command, std::string& method);
+// How sure hits must be, instead of a largest cost.
+CLI::Option* AddConfidenceOption(CLI::App& command, std::optional<double>& confidence);
+
+// Errors  InvalidArgument if the template in `file` does not know how sure its hits are.
+void CheckKnowsConfidence(const MotionTemplate& motion_template, const std::filesystem::path& file);
 
 // The feature set that the template in `file` needs: its own if built in, else the one that the
 // user names. Errors  NotFound, naming --feature-set; Mismatch if it is another than the template

@@ -16,6 +16,7 @@
 #include "kinebase/features/vocabulary.h"
 #include "kinebase/library/take_search.h"
 #include "kinebase/library/takes.h"
+#include "kinebase/templates/calibration.h"
 #include "kinebase/templates/keyframes.h"
 #include "kinebase/templates/quantized_template.h"
 #include "kinebase/templates/template_file.h"
@@ -28,6 +29,7 @@ struct SearchCommandOptions {
   std::vector<std::filesystem::path> templates;
   std::vector<std::filesystem::path> paths;
   std::optional<double> tau;
+  std::optional<double> confidence;
   std::size_t most_hits = 500;
   bool mirror = false;
   std::filesystem::path curve;
@@ -66,6 +68,10 @@ void CheckUsage(const SearchCommandOptions& options) {
   }
   if (options.fuzzy && options.features.empty()) {
     throw UsageError("--fuzzy needs the features that count: --features rknee bent,lknee bent");
+  }
+  if (options.confidence && options.method == "mt") {
+    throw UsageError(
+        "--confidence is about the costs of mt+; leave out --method mt, or give --tau");
   }
   CheckCurve(options);
 }
@@ -176,6 +182,10 @@ Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& o
   if (options.method == "mt+" && !query.motion_template.contrast) {
     throw Error(ErrorCode::kInvalidArgument,
                 "is a plain template; learn it with --method mt+ for that", {path});
+  }
+  if (options.confidence) {
+    CheckKnowsConfidence(query.motion_template, path);
+    query.motion_template.tau = CostAt(*query.motion_template.calibration, *options.confidence);
   }
   return query;
 }
@@ -367,7 +377,8 @@ void AddFuzzyOptions(CLI::App& command, SearchCommandOptions& options) {
       ->check(WholeNumber(0, kMostFaults))
       ->capture_default_str()
       ->type_name("N");
-  for (const char* other : {"--tau", "--keyframes", "--curve", "--method", "--profile"}) {
+  for (const char* other :
+       {"--tau", "--confidence", "--keyframes", "--curve", "--method", "--profile"}) {
     fuzzy->excludes(command.get_option(other));
   }
 }
@@ -387,6 +398,7 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
                    "Largest cost of a hit (default: the template's own, else 0.06); 1 lists all")
       ->check(NonNegativeNumber())
       ->type_name("COST");
+  AddConfidenceOption(*command, options->confidence)->excludes("--tau");
   command->add_option("--top", options->most_hits, "Hits at most")
       ->check(WholeNumber(0))
       ->capture_default_str()

@@ -127,6 +127,13 @@ double LeastCost(const QuantizedTemplate& motion_template, const FeatureMatrix& 
   return least;
 }
 
+// Below what other recordings cost at their best.
+std::optional<double> ThresholdBelow(std::vector<double> least) {
+  if (least.empty()) return std::nullopt;
+  std::ranges::sort(least);
+  return kShareOfFalseCost * least[std::min<std::size_t>(1, least.size() - 1)];
+}
+
 // Groups of features that a template asks for, as bits by `group_of`.
 std::uint64_t GroupsAskedFor(const QuantizedTemplate& motion_template,
                              std::span<const int> group_of) {
@@ -314,9 +321,25 @@ std::optional<double> ThresholdFromBackground(const QuantizedTemplate& motion_te
   ParallelFor(background.size(), threads,
               [&](std::size_t i) { least[i] = LeastCost(motion_template, background[i]); });
   std::erase_if(least, [](double cost) { return !std::isfinite(cost); });
-  if (least.empty()) return std::nullopt;
-  std::ranges::sort(least);
-  return kShareOfFalseCost * least[std::min<std::size_t>(1, least.size() - 1)];
+  return ThresholdBelow(std::move(least));
+}
+
+std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_template,
+                                              std::span<const RecordingStreams> background,
+                                              const RankOptions& ingredients) {
+  RankOptions options = ingredients;
+  options.tau = std::numeric_limits<double>::infinity();
+  options.rivals = false;
+  options.every_end = false;
+  options.most_hits = std::numeric_limits<std::size_t>::max();
+  std::map<int, double> least;  // By recording; those without a hit are too short.
+  const auto hits = RankHits(std::span(&motion_template, 1), background, options);
+  for (const RankedHit& ranked : hits.front()) {
+    const auto [entry, is_new] = least.try_emplace(ranked.hit.recording, ranked.hit.cost);
+    entry->second = std::min(entry->second, ranked.hit.cost);
+  }
+  const auto costs = std::views::values(least);
+  return ThresholdBelow({costs.begin(), costs.end()});
 }
 
 }  // namespace kinebase

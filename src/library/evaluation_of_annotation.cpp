@@ -69,6 +69,20 @@ JudgedRecording Annotate(const LongTake& take, const PoseStream& poses,
   return judged;
 }
 
+// From the library and what the actors that are learned from do otherwise.
+void ChooseThresholds(const Parts& parts, const RankOptions& ranking,
+                      std::vector<MotionTemplate>& templates) {
+  for (MotionTemplate& each : templates) {
+    std::vector<RecordingStreams> background = parts.unlabelled;
+    for (const LabelledClip* clip : parts.train) {
+      if (clip->class_name == each.name) continue;
+      background.push_back({&clip->take.features, &clip->take.poses});
+    }
+    const auto tau = ThresholdFromBackground(each, background, ranking);
+    if (tau) each.tau = tau;
+  }
+}
+
 // [method][take]
 std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& data,
                                                         const std::string& actor, std::size_t half,
@@ -91,6 +105,11 @@ std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& da
   for (std::size_t m = 0; m < options.methods.size(); ++m) {
     std::vector<MotionTemplate> templates = ForMethod(options.methods[m], learned);
     Calibrate(evidence[m], templates);
+    if (options.background_thresholds) {
+      RankOptions ranking = options.methods[m].Ranking();
+      ranking.threads = options.threads;
+      ChooseThresholds(parts, ranking, templates);
+    }
     judged[m].resize(kSeeds.size());
     ParallelFor(kSeeds.size(), options.threads, [&](std::size_t i) {
       const LongTake take = MakeLongTake(parts.clips, parts.fillers, kSeeds[i]);

@@ -9,4 +9,12 @@ double Confidence(const Calibration& calibration, double cost) {
   return x > 0 ? std::exp(-x) / (1 + std::exp(-x)) : 1 / (1 + std::exp(x));
 }
 
+double CostAt(const Calibration& calibration, double confidence) {
+  return (std::log((1 - confidence) / confidence) - calibration.offset) / calibration.slope;
+}
+
+Calibration HalfAt(const Calibration& calibration, double cost) {
+  return {.slope = calibration.slope, .offset = -calibration.slope * cost};
+}
+
 }  // namespace kinebase

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cli/expectations.h"
 #include "cli/run_program.h"
 #include "cli/synthetic_library.h"
@@ -72,6 +74,89 @@ TEST_F(ContrastCommands, FindTheClassWithConfidence) {
   EXPECT_TRUE(plain[0]["confidence"].is_null());
 }
 
+TEST_F(ContrastCommands, FindWhatIsAsSureAsAskedFor) {
+  const fs::path squat = LearnAll() / "squat1Reps.template.json";
+  const auto hits_of = [&](const std::string& option, const std::string& value) {
+    const ProgramResult run =
+        RunKinebase({"search", squat, "--in", library_.folder(), option, value, "--json", "-q"});
+    return json::parse(run.out).at("hits");
+  };
+  const json all = hits_of("--tau", "9");
+  for (const char* confidence : {"0.9", "0.5", "0.02"}) {
+    json sure = json::array();
+    for (const json& hit : all) {
+      if (hit["confidence"] >= std::stod(confidence)) sure.push_back(hit);
+    }
+    EXPECT_THAT(sure, testing::AllOf(testing::Not(testing::IsEmpty()),
+                                     testing::Not(testing::SizeIs(all.size()))));
+    EXPECT_EQ(hits_of("--confidence", confidence), sure) << confidence;
+  }
+}
+
+TEST_F(ContrastCommands, AnnotateWhatIsAsSureAsAskedFor) {
+  const fs::path squat = LearnAll() / "squat1Reps.template.json";
+  const Calibration learned = *ReadTemplate(squat).calibration;
+  std::size_t fewest = 0;
+  for (const double confidence : {0.9, 0.5, 0.02}) {
+    const json found = RunKinebase({"annotate", squat, "--in", library_.folder(), "--confidence",
+                                    std::to_string(confidence), "--no-unknown", "--json", "-q"})
+                           .Json();
+    const double tau = found["thresholds"][0]["tau"];
+    EXPECT_NEAR(1 / (1 + std::exp(learned.slope * tau + learned.offset)), confidence, 1e-9);
+    EXPECT_GE(found["segments"].size(), fewest);
+    fewest = found["segments"].size();
+    for (const json& segment : found["segments"]) {
+      EXPECT_GE(segment["confidence"].get<double>(), confidence);
+    }
+  }
+  EXPECT_GT(fewest, 0);
+  const std::vector<std::string> for_people = {"annotate", squat, "--in", library_.folder(), "-q"};
+  EXPECT_THAT(RunKinebase(for_people).out, testing::ContainsRegex("cost +confidence +file"));
+}
+
+// The threshold as search would tell it: a share of what the second-best recording costs.
+TEST_F(ContrastCommands, AnnotateWithThresholdsFromTheBackground) {
+  const fs::path squat = LearnAll() / "squat1Reps.template.json";
+  std::map<std::string, double> least;
+  const json hits =
+      RunKinebase({"search", squat, "--in", library_.folder(), "--tau", "9", "--json", "-q"})
+          .Json()["hits"];
+  for (const json& hit : hits) {
+    const std::string file = hit["file"];
+    if (file.find("squat1Reps") != std::string::npos) continue;
+    const auto [entry, is_new] = least.try_emplace(file, hit["cost"]);
+    entry->second = std::min(entry->second, hit["cost"].get<double>());
+  }
+  std::vector<double> costs;
+  costs.reserve(least.size());
+  for (const auto& [file, cost] : least) costs.push_back(cost);
+  std::ranges::sort(costs);
+  const auto annotate = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"annotate",
+                                          squat,
+                                          "--in",
+                                          library_.Clip("squat1Reps", "sb", 1),
+                                          "--background",
+                                          library_.folder(),
+                                          "--no-unknown",
+                                          "--json",
+                                          "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunKinebase(arguments).Json();
+  };
+  const json found = annotate({});
+  const double tau = found["thresholds"][0]["tau"];
+  EXPECT_DOUBLE_EQ(tau, 0.7 * costs.at(1));
+  ASSERT_FALSE(found["segments"].empty());
+  // The confidence is ½ there, and as steep as it was learned.
+  const double slope = ReadTemplate(squat).calibration->slope;
+  const json& segment = found["segments"][0];
+  EXPECT_NEAR(segment["confidence"].get<double>(),
+              1 / (1 + std::exp(slope * (segment["cost"].get<double>() - tau))), 1e-9);
+  EXPECT_NEAR(annotate({"--confidence", "0.1"})["thresholds"][0]["tau"].get<double>(),
+              tau + std::log(9) / slope, 1e-9);
+}
+
 TEST_F(ContrastCommands, LearnOneClassFromClipsAgainstABackground) {
   const fs::path squat = library_.scratch() / "squat.json";
   const ProgramResult run =
@@ -113,6 +198,23 @@ TEST_F(ContrastCommands, SayWhatIsMissing) {
              "--keyframes", "auto"},
             1,
             "--method mt"},
+           {{"search", library_.Learn("kickRFront1Reps"), "--in", squat, "--confidence", "0.5"},
+            1,
+            "--method mt+"},
+           {{"annotate", library_.Learn("jumpingJack1Reps"), "--in", squat, "--confidence", "0.5"},
+            1,
+            "--method mt+"},
+           {{"annotate", squat, "--in", squat, "--confidence", "0.5", "--tau", "1"},
+            2,
+            "--tau or --confidence"},
+           {{"search", squat, "--in", squat, "--confidence", "0.5", "--tau", "1"},
+            2,
+            "--confidence"},
+           {{"search", squat, "--in", squat, "--confidence", "0.5", "--method", "mt"},
+            2,
+            "leave out --method mt"},
+           {{"annotate", squat, "--in", squat, "--confidence", "1"}, 2, "from 0.001 to 0.999"},
+           {{"evaluate", "--clips", list, "--thresholds", "background"}, 2, "--protocol annotate"},
            {{"evaluate", "--clips", out}, 1, "x.json"},
            {{"evaluate", "--clips", list, "--methods", "best"}, 2, "mt+"},
            {{"evaluate", "--clips", list, "--possibly-relevant", list}, 2, "--labels"},

@@ -1,7 +1,10 @@
 """EAF as pympi reads it: the same segments as our JSON has, and the same again after pympi wrote it."""
 
+import datetime
+import itertools
 import json
 import unittest
+from xml.etree import ElementTree
 
 import pympi
 
@@ -51,6 +54,23 @@ class ElanTest(InterchangeTest):
             times = sorted(document.get_annotation_data_for_tier(tier))
             self.assertTrue(all(a[0] < a[1] for a in times))
             self.assertTrue(all(a[1] <= b[0] for a, b in zip(times, times[1:])))
+
+    def test_elements_and_their_names_are_as_the_format_wants_them(self):
+        # What pympi would read all the same: their order, names that are unique, names that exist.
+        root = ElementTree.parse(self.document).getroot()
+        self.assertEqual([element for element, _ in itertools.groupby(child.tag for child in root)],
+                         ["HEADER", "TIME_ORDER", "TIER", "LINGUISTIC_TYPE"])
+        datetime.datetime.fromisoformat(root.get("DATE"))
+        slots = [slot.get("TIME_SLOT_ID") for slot in root.find("TIME_ORDER")]
+        annotations = list(root.iter("ALIGNABLE_ANNOTATION"))
+        names = slots + [annotation.get("ANNOTATION_ID") for annotation in annotations]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertTrue(all(name[0].isalpha() for name in names))
+        for annotation in annotations:
+            self.assertIn(annotation.get("TIME_SLOT_REF1"), slots)
+            self.assertIn(annotation.get("TIME_SLOT_REF2"), slots)
+        times = [int(slot.get("TIME_VALUE")) for slot in root.find("TIME_ORDER")]
+        self.assertEqual(times, sorted(times))
 
 
 if __name__ == "__main__":

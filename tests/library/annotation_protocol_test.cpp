@@ -8,6 +8,7 @@
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/library/annotation.h"
 #include "kinebase/library/annotation_accuracy.h"
+#include "kinebase/library/evaluation.h"
 #include "kinebase/library/long_take.h"
 #include "kinebase/templates/learning.h"
 #include "support/test_data.h"
@@ -50,6 +51,13 @@ Recordings LoadRecordings(const FeatureSet& features) {
     }
   }
   return recordings;
+}
+
+EvaluationData LoadData(const FeatureSet& features) {
+  const std::filesystem::path root = test::TestData("data");
+  std::vector<std::filesystem::path> others = FindMotionFiles(std::vector{root / "cmu"});
+  std::erase_if(others, [](const auto& file) { return file.extension() != ".amc"; });
+  return LoadEvaluationData({root / "hdm05" / "clips.csv", {}, others}, features, 30, {}, 0, {});
 }
 
 // From all clips of the class but the actor's.
@@ -137,7 +145,8 @@ AccuracyCounts FramesOf(const std::vector<JudgedRecording>& judged, int class_co
 
 TEST(AnnotationProtocol, FindsTheMotionsOfActorsNeverSeen) {
   KINEBASE_NEEDS_TEST_DATA();
-  const Recordings recordings = LoadRecordings(LoadFeatureSet("bonn"));
+  const FeatureSet features = LoadFeatureSet("bonn");
+  const Recordings recordings = LoadRecordings(features);
   ASSERT_EQ(recordings.clips.size(), 146U);
   std::vector<JudgedRecording> judged;
   std::vector<JudgedRecording> with_one_tau;
@@ -158,6 +167,16 @@ TEST(AnnotationProtocol, FindsTheMotionsOfActorsNeverSeen) {
   EXPECT_GE(frames.f1(), 0.8);
   EXPECT_GE(segments.f1(), 0.84);
   EXPECT_GT(frames.f1(), fixed.f1() + 0.03);  // Thresholds of their own are worth their while.
+
+  // The library's own protocol, on the same takes.
+  const EvaluationData data = LoadData(features);
+  const std::vector<Method> methods = {*FindMethod("mt"), *FindMethod("mt+")};
+  const auto evaluated =
+      EvaluateAnnotation(data, features, {.methods = methods, .background_thresholds = true});
+  EXPECT_EQ(AnnotationAccuracy::Micro(evaluated[0].accuracy.frames), frames);
+  EXPECT_EQ(AnnotationAccuracy::Micro(evaluated[0].accuracy.segments), segments);
+  EXPECT_GE(AnnotationAccuracy::Micro(evaluated[1].accuracy.frames).f1(), 0.87);
+  EXPECT_GE(AnnotationAccuracy::Micro(evaluated[1].accuracy.segments).f1(), 0.93);
 }
 
 }  // namespace

@@ -175,5 +175,21 @@ TEST(Confidence, IsAHalfAtTheThresholdAndFallsWithTheCost) {
   EXPECT_EQ(Confidence(calibration, -1e6), 1);
 }
 
+TEST(Confidence, TellsTheCostOfWhoWantsToBeThatSure) {
+  const Calibration calibration{.slope = 40, .offset = -8};
+  EXPECT_DOUBLE_EQ(CostAt(calibration, 0.5), 0.2);
+  EXPECT_DOUBLE_EQ(CostAt(calibration, 0.9), 0.2 - std::log(9) / 40);
+  EXPECT_DOUBLE_EQ(CostAt(calibration, 0.1), 0.2 + std::log(9) / 40);
+  EXPECT_LT(CostAt(calibration, 0.9999), 0);  // What costs nothing is less sure.
+}
+
+TEST(Confidence, MovesAsAWhole) {
+  const Calibration calibration{.slope = 40, .offset = -8};
+  const Calibration moved = HalfAt(calibration, 0.3);
+  for (const double cost : {0.0, 0.17, 0.2, 0.4}) {
+    EXPECT_NEAR(Confidence(moved, cost + 0.1), Confidence(calibration, cost), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace kinebase::test

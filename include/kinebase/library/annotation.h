@@ -113,4 +113,12 @@ struct PlaceRange {
     const QuantizedTemplate& motion_template, std::span<const FeatureMatrix> background,
     int threads = 0);
 
+// The same of what RankHits says that hits cost: of templates that know what sets their class off,
+// and of plain ones.
+// ingredients  Which of a template's are used, and threads; the rest of the options is not.
+// Errors       As RankHits.
+[[nodiscard]] std::optional<double> ThresholdFromBackground(
+    const MotionTemplate& motion_template, std::span<const RecordingStreams> background,
+    const RankOptions& ingredients = {});
+
 }  // namespace kinebase

@@ -91,6 +91,9 @@ struct EvaluateOptions {
   std::vector<double> taus = {0.02, 0.04, 0.06, 0.1};
   std::size_t most_hits = 500;
   Profile profile = Profile::kBonn;
+  // Protocol "annotate": thresholds from what other motion costs (ThresholdFromBackground), instead
+  // of from training clips alone.
+  bool background_thresholds = false;
   int threads = 0;
   ProgressCallback progress;
 };
@@ -207,7 +210,8 @@ struct AnnotateEvaluation {
 
 // Protocol "annotate": long takes of all clips of the actor who is left out, in seeded random
 // order, with 2 to 10 s of distractors between them; three takes for each half of the distractors,
-// the other half being the library to learn with. Clips of a class that nobody else performs are
+// the other half being the library to learn with, which thresholds may be
+// chosen from as well. Clips of a class that nobody else performs are
 // left out, and an actor who has no others.
 //
 // Errors  InvalidArgument: fewer than two actors or distractors, or no class that two actors

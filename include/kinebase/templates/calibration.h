@@ -17,4 +17,12 @@ struct KnownHit {
 // 1 / (1 + exp(slope · cost + offset)), in [0, 1].
 [[nodiscard]] double Confidence(const Calibration& calibration, double cost);
 
+// The cost of which Confidence is `confidence`: the threshold of who wants to be that sure. Below 0
+// where no hit is as sure as that.
+// confidence  Above 0 and below 1.
+[[nodiscard]] double CostAt(const Calibration& calibration, double confidence);
+
+// As steep, and ½ at another cost: for a threshold that was chosen elsewhere.
+[[nodiscard]] Calibration HalfAt(const Calibration& calibration, double cost);
+
 }  // namespace kinebase
