@@ -5,29 +5,17 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/evaluate_options.h"
+#include "cli/evaluate_preset.h"
 #include "cli/evaluate_report.h"
-#include "cli/feature_options.h"
+#include "cli/score_table.h"
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/library/evaluation.h"
+#include "kinebase/library/paper_tables.h"
 
 namespace kinebase::cli {
 namespace {
-
-struct EvaluateCommandOptions {
-  CommonOptions common;
-  FeatureOptions features;
-  std::filesystem::path list;
-  std::vector<std::filesystem::path> folders;
-  std::vector<std::filesystem::path> distractors;
-  std::filesystem::path possibly_relevant;
-  std::filesystem::path labels;
-  std::string protocol = "leave-one-actor-out";
-  std::string thresholds = "training";
-  std::vector<std::string> methods = {"mt", "mt+"};
-  std::string format = "text";
-  ReportOptions report;
-};
 
 Json ToJson(const TauScores& scores) {
   return {{"tau", scores.tau},
@@ -90,9 +78,6 @@ constexpr char kNone[] = "–";
 
 std::string ShortNumber(double value) { return fmt::format("{:.3f}", value); }
 
-// Rows of cells; the first row is the head.
-using Rows = std::vector<std::vector<std::string>>;
-
 // A class's cell of a method in each column.
 std::vector<std::string> ScoreCells(const MethodResult& result, const Scores& scores) {
   return {ShortNumber(scores.ap_lenient), ShortNumber(scores.ap_strict),
@@ -148,31 +133,6 @@ Rows ScoresByMethod(const Evaluation& evaluation) {
          macro.separation > 0 ? fmt::format("{:.1f}", macro.separation) : kNone});
   }
   return rows;
-}
-
-std::string AsText(const Rows& rows) {
-  std::vector<std::string> head = {rows.front().front()};
-  for (std::size_t i = 1; i < rows.front().size(); ++i) head.push_back('>' + rows.front()[i]);
-  TextTable table(head);
-  for (std::size_t i = 1; i < rows.size(); ++i) table.Add(rows[i]);
-  return table.ToString();
-}
-
-std::string AsMarkdown(const Rows& rows) {
-  std::string text;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool is_macro = rows[i].front() == "macro";
-    text += '|';
-    for (const std::string& cell : rows[i]) {
-      text += is_macro ? fmt::format(" **{}** |", cell) : fmt::format(" {} |", cell);
-    }
-    text += '\n';
-    if (i > 0) continue;
-    text += '|';
-    for (std::size_t c = 0; c < rows[i].size(); ++c) text += c == 0 ? "---|" : "---:|";
-    text += '\n';
-  }
-  return text;
 }
 
 Json ToJson(const AccuracyCounts& counts) {
@@ -247,6 +207,7 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   if (options.possibly_relevant.empty() != options.labels.empty()) {
     throw UsageError("--possibly-relevant and --labels go together");
   }
+  if (!options.preset.empty()) return RunPreset(options, command);
   const auto [methods, baselines] = ChosenMethods(options.methods);
   if (annotates && !baselines.empty()) {
     throw UsageError(fmt::format("--protocol annotate is for templates; '{}' gives no segments",
@@ -271,7 +232,9 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   }
   for (const TakeFailure& failure : data.failures) PrintError(failure.error.what());
   if (data.clips.empty()) return kCouldNot;
-  const auto as = options.format == "markdown" ? &AsMarkdown : &AsText;
+  const auto as = [&options](const Rows& rows) {
+    return options.format == "markdown" ? AsMarkdown(rows) : AsText(rows);
+  };
   if (annotates) {
     const auto results = EvaluateAnnotation(data, features,
                                             {.methods = methods,
@@ -341,8 +304,9 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
       ->type_name("FILE");
   command->add_option("--labels", options->labels, "Table of the stretches that it names")
       ->type_name("FILE");
-  command->add_option("--protocol", options->protocol, "What is learned from, what searched")
-      ->check(OneOf({"leave-one-actor-out", "half", "annotate"}))
+  CLI::Option* protocol =
+      command->add_option("--protocol", options->protocol, "What is learned from, what searched");
+  protocol->check(OneOf({"leave-one-actor-out", "half", "annotate"}))
       ->capture_default_str()
       ->type_name("NAME");
   command
@@ -354,10 +318,28 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
   std::vector<std::string> names;
   for (const Method& method : RetrievalMethods()) names.emplace_back(method.name);
   for (const Baseline& baseline : Baselines()) names.emplace_back(baseline.name);
-  command->add_option("--methods", options->methods, "Methods, side by side")
-      ->delimiter(',')
-      ->check(OneOf(names))
-      ->type_name("NAMES");
+  CLI::Option* methods =
+      command->add_option("--methods", options->methods, "Methods, side by side");
+  methods->delimiter(',')->check(OneOf(names))->type_name("NAMES");
+  const auto presets = PaperPresetNames();
+  CLI::Option* preset = command->add_option(
+      "--preset", options->preset,
+      "Instead: table1 to table5, figure7 or figure8 of the motion template paper, its figures "
+      "beside ours");
+  preset->check(OneOf(std::vector<std::string>(presets.begin(), presets.end())))
+      ->excludes(protocol)
+      ->excludes(methods)
+      ->type_name("NAME");
+  command
+      ->add_option("--paper-classes", options->paper_classes,
+                   "What the paper's classes are called in the list: CSV with columns class, hdm05")
+      ->needs(preset)
+      ->type_name("FILE");
+  command
+      ->add_option("--picture", options->picture, "Draw figure7 or figure8 into this .svg or .png")
+      ->needs(preset)
+      ->check(PictureFile())
+      ->type_name("FILE");
   command->add_option("--format", options->format, "Tables for people, or for a document")
       ->check(OneOf({"text", "markdown"}))
       ->capture_default_str()
@@ -380,7 +362,8 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
   AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);
   command->footer(
-      "Example:\n  kinebase evaluate --clips clips.csv --distractors takes/ --methods mt,mt+");
+      "Examples:\n  kinebase evaluate --clips clips.csv --distractors takes/ --methods mt,mt+\n"
+      "  kinebase evaluate --clips clips.csv --preset table2");
   command->callback([options, command, &exit_code] { exit_code = Run(*options, *command); });
 }
 

@@ -55,22 +55,20 @@ std::string PictureName(const std::string& what, const ReportOptions& options) {
   return what + '.' + options.picture_format;
 }
 
-std::string ConfusionName(std::string_view method, const ReportOptions& options) {
-  return PictureName(fmt::format("confusion-{}", method), options);
-}
+std::string ConfusionName(std::string_view method) { return fmt::format("confusion-{}", method); }
 
 std::string Embed(const std::string& what, const std::string& name) {
   return fmt::format("![{}]({})\n\n", what, name);
 }
 
 // Title, command and figures that all reports begin with.
-std::string DocumentHead(const ReportText& text) {
+std::string DocumentHead(const ReportText& text, const std::string& heading = "Methods") {
   std::string document = "# How well motions are found\n\n```sh\n" + text.command + "\n```\n\n";
   document += "| measured on | |\n|---|---|\n";
   for (const auto& [name, value] : text.facts) {
     document += fmt::format("| {} | {} |\n", name, value);
   }
-  return document + "\n## Methods\n\n" + text.methods_table + '\n';
+  return document + "\n## " + heading + "\n\n" + text.methods_table + '\n';
 }
 
 PrecisionPanel PanelOf(const Evaluation& evaluation, std::size_t class_index) {
@@ -204,17 +202,21 @@ std::vector<std::pair<std::string, std::string>> DataFacts(const EvaluationData&
 
 void CheckReport(const ReportOptions& options, bool annotates, std::span<const std::string> methods,
                  Overwrite overwrite) {
+  std::vector<std::string> names;
+  if (!annotates) names = {"precision", "reliability"};
+  for (const std::string& method : methods) names.push_back(ConfusionName(method));
+  CheckReport(options, names, overwrite);
+}
+
+void CheckReport(const ReportOptions& options, std::span<const std::string> pictures,
+                 Overwrite overwrite) {
   std::error_code ignored;
   if (fs::exists(options.folder, ignored) && !fs::is_directory(options.folder, ignored)) {
     throw Error(ErrorCode::kAlreadyExists, "is no folder; --report takes the name of one",
                 {options.folder});
   }
   std::vector<std::string> names = {kDocument, kJson};
-  if (!annotates) {
-    names.push_back(PictureName("precision", options));
-    names.push_back(PictureName("reliability", options));
-  }
-  for (const std::string& method : methods) names.push_back(ConfusionName(method, options));
+  for (const std::string& picture : pictures) names.push_back(PictureName(picture, options));
   for (const std::string& name : names) CheckWritable(options.folder / name, overwrite);
 }
 
@@ -237,8 +239,8 @@ void WriteReport(const ReportOptions& options, const ReportText& text, const Eva
   document +=
       "## What clips are taken for\n\nThe class whose template, or example, fits a clip best.\n\n";
   for (const MethodResult& result : evaluation.methods) {
-    add(fmt::format("Confusion of {}", result.name), ConfusionName(result.name, options),
-        DescribeConfusion(result));
+    add(fmt::format("Confusion of {}", result.name),
+        PictureName(ConfusionName(result.name), options), DescribeConfusion(result));
   }
   if (std::ranges::any_of(evaluation.methods, &MethodResult::has_confidence)) {
     document += fmt::format(
@@ -261,9 +263,24 @@ void WriteReport(const ReportOptions& options, const ReportText& text,
   std::string document = DocumentHead(text);
   document += "## What frames are taken for\n\n";
   for (const AnnotateEvaluation& result : results) {
-    const std::string name = ConfusionName(result.method, options);
+    const std::string name = PictureName(ConfusionName(result.method), options);
     document += Embed(fmt::format("Confusion of {}", result.method), name);
     files.push_back({name, Encode(DescribeConfusion(result, classes), options)});
+  }
+  document.pop_back();
+  files.push_back({kDocument, std::move(document)});
+  WriteAll(options, files, overwrite);
+}
+
+void WriteReport(const ReportOptions& options, const ReportText& text, const std::string& heading,
+                 const std::string& name, const std::optional<Picture>& picture,
+                 Overwrite overwrite) {
+  std::vector<ReportFile> files = {JsonFile(text)};
+  std::string document = DocumentHead(text, heading);
+  if (picture) {
+    const std::string file = PictureName(name, options);
+    document += Embed(heading, file);
+    files.push_back({file, Encode(*picture, options)});
   }
   document.pop_back();
   files.push_back({kDocument, std::move(document)});

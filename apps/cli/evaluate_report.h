@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -44,6 +45,10 @@ struct ReportText {
 void CheckReport(const ReportOptions& options, bool annotates, std::span<const std::string> methods,
                  Overwrite overwrite);
 
+// The same of a report with these pictures, named without extension.
+void CheckReport(const ReportOptions& options, std::span<const std::string> pictures,
+                 Overwrite overwrite);
+
 // All files, or none.
 // Errors  Those of WriteFiles.
 void WriteReport(const ReportOptions& options, const ReportText& text, const Evaluation& evaluation,
@@ -51,6 +56,11 @@ void WriteReport(const ReportOptions& options, const ReportText& text, const Eva
 void WriteReport(const ReportOptions& options, const ReportText& text,
                  std::span<const AnnotateEvaluation> results,
                  const std::vector<std::string>& classes, Overwrite overwrite);
+
+// One table under a heading, and perhaps a picture: the file `name` and its extension.
+void WriteReport(const ReportOptions& options, const ReportText& text, const std::string& heading,
+                 const std::string& name, const std::optional<Picture>& picture,
+                 Overwrite overwrite);
 
 // [class][taken for] and what was mistaken.
 [[nodiscard]] Json ConfusionToJson(const MethodResult& result);

@@ -84,11 +84,7 @@ std::vector<JudgedHit> Judge(std::span<const RankedHit> hits, const std::string&
       result.right = clip->class_name == class_name && claimed.insert(ranked.hit.recording).second;
       continue;
     }
-    const TakeFeatures& take = *stream.takes[recording];
-    const FrameRange frames = FramesOfColumns(
-        ranked.hit.first, ranked.hit.last, take.features.rate_hz, take.rate_hz, take.frame_count);
-    const double middle = static_cast<double>(frames.first + frames.last) / 2 + 1;
-    result.excused = possibly_relevant.MayShow(class_name, take.path.stem().string(), middle);
+    result.excused = possibly_relevant.MayShow(class_name, *stream.takes[recording], ranked.hit);
   }
   return judged;
 }
@@ -434,6 +430,21 @@ bool PossiblyRelevant::MayShow(const std::string& class_name, const std::string&
     }
   }
   return false;
+}
+
+bool PossiblyRelevant::MayShow(const std::string& class_name, const TakeFeatures& take,
+                               const Hit& hit) const {
+  const FrameRange frames =
+      FramesOfColumns(hit.first, hit.last, take.features.rate_hz, take.rate_hz, take.frame_count);
+  const double middle = static_cast<double>(frames.first + frames.last) / 2 + 1;
+  return MayShow(class_name, take.path.stem().string(), middle);
+}
+
+void PossiblyRelevant::AlsoAs(const std::string& class_name, const std::string& other_name) {
+  const auto relevant = relevant_.find(class_name);
+  if (relevant == relevant_.end() || class_name == other_name) return;
+  auto& other = relevant_[other_name];
+  other.insert(other.end(), relevant->second.begin(), relevant->second.end());
 }
 
 std::set<std::string> EvaluationData::ClassNames() const {

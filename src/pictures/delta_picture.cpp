@@ -247,8 +247,7 @@ void DrawLegend(Canvas& canvas, PicturePoint at, bool has_labels) {
 
 }  // namespace
 
-void DrawDeltaCurves(std::span<const DeltaPanel> panels, const std::filesystem::path& path,
-                     Overwrite overwrite) {
+Picture DeltaCurvesPicture(std::vector<DeltaPanel> panels) {
   Check(panels);
   const double left = LeftOf(panels);
   PictureSize size = {left + kCurvesWidth + kPlotMargin, 2 * kPlotMargin + kLegendHeight};
@@ -257,14 +256,20 @@ void DrawDeltaCurves(std::span<const DeltaPanel> panels, const std::filesystem::
     size.height += HeightOf(panel) + kPanelGap;
     has_labels = has_labels || !panel.labels.empty();
   }
-  WritePicture(path, size, overwrite, [&](Canvas& canvas) {
-    double top = kPlotMargin;
-    for (const DeltaPanel& panel : panels) {
-      PanelDrawing(canvas, panel, left).Draw(top);
-      top += HeightOf(panel) + kPanelGap;
-    }
-    DrawLegend(canvas, {left, top}, has_labels);
-  });
+  return {size, [panels = std::move(panels), left, has_labels](Canvas& canvas) {
+            double top = kPlotMargin;
+            for (const DeltaPanel& panel : panels) {
+              PanelDrawing(canvas, panel, left).Draw(top);
+              top += HeightOf(panel) + kPanelGap;
+            }
+            DrawLegend(canvas, {left, top}, has_labels);
+          }};
+}
+
+void DrawDeltaCurves(std::span<const DeltaPanel> panels, const std::filesystem::path& path,
+                     Overwrite overwrite) {
+  const Picture picture = DeltaCurvesPicture({panels.begin(), panels.end()});
+  WritePicture(path, picture.size, overwrite, picture.draw);
 }
 
 }  // namespace kinebase

@@ -38,6 +38,12 @@ class PossiblyRelevant {
 
   [[nodiscard]] bool MayShow(const std::string& class_name, const std::string& trial,
                              double frame) const;
+  // The same of a hit, whose middle decides.
+  [[nodiscard]] bool MayShow(const std::string& class_name, const TakeFeatures& take,
+                             const Hit& hit) const;
+
+  // What may show a class may show another from here on, as one class has several names.
+  void AlsoAs(const std::string& class_name, const std::string& other_name);
 
  private:
   struct Segment {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kinebase/core/output_file.h"
+#include "kinebase/pictures/canvas.h"
 #include "kinebase/pictures/timeline_picture.h"
 
 namespace kinebase {
@@ -44,7 +45,11 @@ inline constexpr Color kDeltaThreshold = {213, 94, 0};
 // stretch. Where columns are narrower than a pixel the least and the greatest of some are drawn.
 //
 // Errors  InvalidArgument: no recording, one without rows, duration or rates; a cost or threshold
-//         below 0 or not a number; a bar that ends before it begins; those of WritePicture.
+//         below 0 or not a number; a bar that ends before it begins.
+[[nodiscard]] Picture DeltaCurvesPicture(std::vector<DeltaPanel> panels);
+
+// The same into a file.
+// Errors  Also those of WritePicture.
 void DrawDeltaCurves(std::span<const DeltaPanel> panels, const std::filesystem::path& path,
                      Overwrite overwrite);
 
