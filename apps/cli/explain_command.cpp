@@ -80,7 +80,7 @@ Explained Explain(const ExplainOptions& options) {
 // The costs and poses that a picture shows beside the features.
 ComparedCosts CostsOf(const Explained& explained) {
   const HitExplanation& explanation = explained.explanation;
-  ComparedCosts costs;
+  ComparedCosts costs{.lookalikes = explanation.lookalikes_cost};
   costs.features.resize(explained.features.features.size());
   for (const FeatureTally& tally : explained.tallies) costs.features[tally.feature] = tally.cost;
   std::vector<JointTally> joints = explained.joints;

@@ -141,8 +141,12 @@ std::string JointTable(const Explained& explained) {
 std::string ContrastText(const Explained& explained) {
   const HitExplanation& explanation = explained.explanation;
   const TakeHit& hit = explanation.hit;
-  std::string text = fmt::format("features {:.4f} and poses {:.4f}", explanation.matching,
-                                 explanation.places_cost);
+  std::string text =
+      explanation.lookalikes_cost > 0
+          ? fmt::format("features {:.4f}, poses {:.4f} and look-alikes {:.4f}",
+                        explanation.matching, explanation.places_cost, explanation.lookalikes_cost)
+          : fmt::format("features {:.4f} and poses {:.4f}", explanation.matching,
+                        explanation.places_cost);
   if (hit.confidence) text += fmt::format("; confidence {:.2f}", *hit.confidence);
   text += '\n';
   if (explanation.rival) {
@@ -231,6 +235,7 @@ Json ToJson(const Explained& explained) {
   if (explained.has_poses()) {
     json["features_cost"] = explanation.matching;
     json["poses_cost"] = explanation.places_cost;
+    json["lookalikes_cost"] = explanation.lookalikes_cost;
     json["score"] = hit.score;
     json["confidence"] = hit.confidence ? Json(*hit.confidence) : Json();
     json["rival"] = RivalToJson(explained);

@@ -1,5 +1,6 @@
 // kinebase learn: a few examples become a motion template.
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -33,6 +34,7 @@ struct LearnCommandOptions {
   int max_rounds = 10;
   std::string method = "mt";
   bool all_classes = false;
+  bool styles = false;
   std::vector<std::filesystem::path> background;
   std::filesystem::path update;
   std::vector<std::filesystem::path> marks;
@@ -61,6 +63,9 @@ void CheckUsage(const LearnCommandOptions& options) {
   }
   if (!options.list.empty() && options.class_name.empty() != options.all_classes) {
     throw UsageError("--list needs either --class NAME or --all-classes");
+  }
+  if (options.styles && options.method == "mt") {
+    throw UsageError("--styles is for --method mt+");
   }
   if (options.all_classes) {
     if (options.output.empty()) throw UsageError("--all-classes needs a folder: -o FOLDER");
@@ -198,6 +203,7 @@ std::vector<MotionTemplate> LearnTogether(const LearnCommandOptions& options,
   const ClassLearningOptions learning{.learning = options.Learning(),
                                       .matching = options.Matching(),
                                       .max_rounds = options.max_rounds,
+                                      .with_styles = options.styles,
                                       .unlabelled = unlabelled,
                                       .threads = options.common.threads,
                                       .progress = MakeProgress(options.common)};
@@ -225,17 +231,29 @@ std::string DescribeLearned(const MotionTemplate& learned, const std::filesystem
       learned.matrix.total_weight() / learned.matrix.rate_hz, OnOneLine(file.string()));
 }
 
+// Of the second style of a class "squat-2.template.json", beside "squat.template.json".
+std::filesystem::path FileOfStyle(const std::filesystem::path& file, int style) {
+  if (style == 1) return file;
+  const std::string name = file.filename().string();
+  const std::size_t dot = std::min(name.find(".template."), name.find_last_of('.'));
+  const std::size_t stem = std::min(dot, name.size());
+  return file.parent_path() /
+         fmt::format("{}-{}{}", name.substr(0, stem), style, name.substr(stem));
+}
+
 // Where each template goes that is asked for.
 std::vector<std::pair<MotionTemplate, std::filesystem::path>> Outputs(
     const LearnCommandOptions& options, std::vector<MotionTemplate> templates) {
   std::vector<std::pair<MotionTemplate, std::filesystem::path>> outputs;
+  std::map<std::string, int> styles;  // By class, so far.
   for (MotionTemplate& each : templates) {
+    const int style = ++styles[each.name];
     if (options.all_classes) {
-      auto file = options.output / DefaultOutput(each.name);
+      auto file = FileOfStyle(options.output / DefaultOutput(each.name), style);
       outputs.emplace_back(std::move(each), std::move(file));
     } else if (options.list.empty() || each.name == options.class_name) {
       each.name = TemplateName(options);
-      outputs.emplace_back(std::move(each), options.output);
+      outputs.emplace_back(std::move(each), FileOfStyle(options.output, style));
     }
   }
   std::map<std::filesystem::path, std::string> names;
@@ -274,7 +292,7 @@ int RunWithContrast(LearnCommandOptions& options) {
     if (!options.common.json) Print(DescribeLearned(learned, file));
   }
   if (options.common.json) {
-    Json json = options.all_classes ? Json{{"templates", list}} : list.front();
+    Json json = options.all_classes || options.styles ? Json{{"templates", list}} : list.front();
     if (!failures.empty()) json["failed"] = FailuresToJson(failures);
     PrintJson(json);
   }
@@ -341,7 +359,7 @@ void AddUpdateOptions(CLI::App& command, LearnCommandOptions& options) {
       ->needs(update)
       ->type_name("FILE");
   for (const char* other : {"CLIP", "--name", "--list", "--profile", "--learning", "--matching",
-                            "--rate", "--method", "--background"}) {
+                            "--rate", "--method", "--background", "--styles"}) {
     update->excludes(command.get_option(other));
   }
 }
@@ -400,6 +418,8 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       ->add_option("--background", options->background,
                    "Other motion for mt+, without labels: best what will be searched")
       ->type_name("PATH");
+  command->add_flag("--styles", options->styles,
+                    "Several templates for a class whose clips fall into groups (method mt+)");
   command->add_option("--max-rounds", options->max_rounds, "Rounds of learning at most")
       ->check(WholeNumber(1, 10000))
       ->capture_default_str()

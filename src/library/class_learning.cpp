@@ -4,20 +4,30 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/templates/learning.h"
+#include "kinebase/templates/styles.h"
+#include "library/lookalikes.h"
 #include "library/threshold_rule.h"
 
 namespace kinebase {
 namespace {
 
-constexpr std::array<Method, 4> kMethods = {
+constexpr std::array<Method, 6> kMethods = {
     Method{.name = "mt"},
     Method{.name = "mt+weights", .contrast = true},
     Method{.name = "mt+places", .contrast = true, .places = true},
-    Method{.name = "mt+", .contrast = true, .places = true, .rivals = true},
+    Method{.name = "mt+lookalikes", .contrast = true, .places = true, .lookalikes = true},
+    Method{.name = "mt+", .contrast = true, .places = true, .lookalikes = true, .rivals = true},
+    Method{.name = "mt+styles",
+           .contrast = true,
+           .places = true,
+           .lookalikes = true,
+           .rivals = true,
+           .styles = true},
 };
 
 using Clips = std::vector<const LabelledClip*>;
@@ -45,6 +55,27 @@ MotionTemplate LearnClass(const std::string& class_name, const Clips& clips,
           .rounds = static_cast<int>(learned.largest_costs.size())};
 }
 
+// Clips of a class by style; all of them where styles are not asked for.
+std::vector<Clips> StylesOf(const Clips& clips, const ClassLearningOptions& options) {
+  if (!options.with_styles) return {clips};
+  std::vector<TemplateMatrix> performances;
+  for (const LabelledClip* clip : clips) {
+    performances.push_back(ToTemplateMatrix(clip->take.features));
+  }
+  const std::vector<int> style_of = FindStyles(performances, options.learning);
+  std::vector<Clips> styles(static_cast<std::size_t>(std::ranges::max(style_of)) + 1);
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    styles[static_cast<std::size_t>(style_of[i])].push_back(clips[i]);
+  }
+  return styles;
+}
+
+std::set<std::string> NamesOf(std::span<const MotionTemplate> templates) {
+  std::set<std::string> names;
+  for (const MotionTemplate& each : templates) names.insert(each.name);
+  return names;
+}
+
 std::vector<RecordingStreams> RecordingsOf(std::span<const LabelledClip* const> clips) {
   std::vector<RecordingStreams> recordings;
   for (const LabelledClip* clip : clips) {
@@ -61,9 +92,10 @@ void Gather(std::span<const MotionTemplate> templates, std::span<const LabelledC
     RankOptions ranking = methods[m].Ranking();
     ranking.threads = threads;
     const auto hits = RankHits(ForMethod(methods[m], templates), recordings, ranking);
-    for (std::size_t t = 0; t < templates.size(); ++t) {
-      std::vector<KnownHit>& known = evidence[m][templates[t].name].*part;
-      const std::vector<KnownHit> judged = JudgeAgainstClips(hits[t], templates[t].name, clips);
+    for (const std::string& name : NamesOf(templates)) {
+      std::vector<KnownHit>& known = evidence[m][name].*part;
+      const std::vector<KnownHit> judged =
+          JudgeAgainstClips(HitsOfClass(name, templates, hits), name, clips);
       known.insert(known.end(), judged.begin(), judged.end());
     }
   }
@@ -76,11 +108,11 @@ void GatherUnlabelled(std::span<const MotionTemplate> templates, std::span<const
     ranking.most_hits = std::numeric_limits<std::size_t>::max();
     ranking.threads = options.threads;
     const auto hits = RankHits(ForMethod(methods[m], templates), options.unlabelled, ranking);
-    for (std::size_t t = 0; t < templates.size(); ++t) {
+    for (const std::string& name : NamesOf(templates)) {
       std::set<int> seen;  // Hits come best first.
-      for (const RankedHit& ranked : hits[t]) {
+      for (const RankedHit& ranked : HitsOfClass(name, templates, hits)) {
         if (!seen.insert(ranked.hit.recording).second) continue;
-        evidence[m][templates[t].name].unlabelled.push_back(ranked.hit.cost);
+        evidence[m][name].unlabelled.push_back(ranked.hit.cost);
       }
     }
   }
@@ -204,14 +236,19 @@ std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> cl
     }
   }
   std::vector<MotionTemplate> templates;
+  std::size_t learned_classes = 0;
   for (const auto& [name, of_class] : by_class) {
-    if (options.progress && !options.progress("learning", templates.size(), by_class.size())) {
+    if (options.progress && !options.progress("learning", learned_classes++, by_class.size())) {
       throw Error(ErrorCode::kCancelled, "learning was cancelled");
     }
-    MotionTemplate& learned = templates.emplace_back(LearnClass(name, of_class, features, options));
-    if (options.with_contrast) {
-      learned.contrast = MeasureContrast(learned, RecordingsOf(of_class), background);
+    for (const Clips& style : StylesOf(of_class, options)) {
+      MotionTemplate& learned = templates.emplace_back(LearnClass(name, style, features, options));
+      if (!options.with_contrast) continue;
+      learned.contrast = MeasureContrast(learned, RecordingsOf(style), background);
     }
+  }
+  if (options.with_contrast) {
+    internal::FindLookalikes(clips, options.unlabelled, options.threads, templates);
   }
   return templates;
 }
@@ -235,7 +272,7 @@ std::vector<Evidence> GatherEvidence(std::span<const LabelledClip* const> clips,
                                      const ClassLearningOptions& options) {
   std::vector<Evidence> evidence(methods.size());
   Gather(templates, clips, methods, options.threads, &ClassEvidence::seen, evidence);
-  if (templates.size() == 1) GatherUnlabelled(templates, methods, options, evidence);
+  if (NamesOf(templates).size() == 1) GatherUnlabelled(templates, methods, options, evidence);
   const std::vector<std::string> groups = GroupsOf(clips);
   for (const std::string& group : std::set<std::string>(groups.begin(), groups.end())) {
     Clips train;
@@ -256,11 +293,37 @@ void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates) {
     if (of_class == evidence.end()) continue;
     const std::optional<CostRange> range = UsualCosts(of_class->second);
     if (!range) continue;
-    each.tau = internal::ThresholdBetween(range->right, range->wrong);
-    each.tau_origin = "a third of the way from right to wrong hits in the training clips";
+    each.tau = std::midpoint(range->right, range->wrong);
+    each.tau_origin = "half way from right to wrong hits in the training clips";
     each.calibration =
         internal::CalibrationAt(*each.tau, internal::kSteepness / (range->wrong - range->right));
   }
+}
+
+std::vector<std::vector<MotionTemplate>> LearnForMethods(std::span<const LabelledClip* const> clips,
+                                                         const FeatureSet& features,
+                                                         std::span<const Method> methods,
+                                                         const ClassLearningOptions& options) {
+  std::vector<std::vector<MotionTemplate>> learned(methods.size());
+  for (const bool with_styles : {false, true}) {
+    std::vector<Method> chosen;
+    std::vector<std::size_t> places;
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      if (methods[m].styles != with_styles) continue;
+      chosen.push_back(methods[m]);
+      places.push_back(m);
+    }
+    if (chosen.empty()) continue;
+    ClassLearningOptions learning = options;
+    learning.with_styles = with_styles;
+    const std::vector<MotionTemplate> templates = LearnClasses(clips, features, learning);
+    const auto evidence = GatherEvidence(clips, templates, features, chosen, learning);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      learned[places[i]] = ForMethod(chosen[i], templates);
+      Calibrate(evidence[i], learned[places[i]]);
+    }
+  }
+  return learned;
 }
 
 }  // namespace kinebase

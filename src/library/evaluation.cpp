@@ -194,28 +194,43 @@ double Separation(std::span<const JudgedHit> hits, double usual_delta) {
   return usual_delta > 0 && usual_cost ? usual_delta / *usual_cost : 0;
 }
 
-// The rankings of templates, with Δ of each over the whole stream.
+// Δ of a class over the whole stream: that of its best template in each column.
+double UsualDeltaOf(std::string_view class_name, std::span<const MotionTemplate> templates,
+                    const Stream& stream, int threads) {
+  std::vector<DeltaCurve> curves(stream.takes.size());
+  for (const MotionTemplate& each : templates) {
+    if (each.name != class_name) continue;
+    const QuantizedTemplate quantized = Quantize(each);
+    ParallelFor(curves.size(), threads, "searching", {}, [&](std::size_t i) {
+      const DeltaCurve curve = ComputeDelta(quantized, stream.takes[i]->features.columns);
+      std::vector<double>& best = curves[i].delta;
+      best.resize(curve.delta.size(), std::numeric_limits<double>::infinity());
+      std::ranges::transform(best, curve.delta, best.begin(),
+                             [](double a, double b) { return std::min(a, b); });
+    });
+  }
+  return internal::UsualDelta(curves);
+}
+
+// A ranking for each class that templates stand for.
 std::vector<ClassRanking> RankTemplates(const Method& method,
                                         std::span<const MotionTemplate> templates,
                                         const Stream& stream, int threads) {
   RankOptions options = method.Ranking();
   options.most_hits = std::numeric_limits<std::size_t>::max();
   options.threads = threads;
-  auto hits = RankHits(templates, stream.recordings, options);
+  const auto hits = RankHits(templates, stream.recordings, options);
   std::vector<ClassRanking> rankings;
-  rankings.reserve(templates.size());
-  for (std::size_t t = 0; t < templates.size(); ++t) {
-    const QuantizedTemplate quantized = Quantize(templates[t]);
-    std::vector<DeltaCurve> curves(stream.takes.size());
-    ParallelFor(curves.size(), threads, "searching", {}, [&](std::size_t i) {
-      curves[i] = ComputeDelta(quantized, stream.takes[i]->features.columns);
-    });
-    rankings.push_back({.class_name = templates[t].name,
+  for (const MotionTemplate& each : templates) {
+    if (std::ranges::find(rankings, each.name, &ClassRanking::class_name) != rankings.end()) {
+      continue;  // Another style of a class that is there.
+    }
+    rankings.push_back({.class_name = each.name,
                         .example = {},
-                        .hits = std::move(hits[t]),
-                        .usual_delta = internal::UsualDelta(curves),
-                        .tau = templates[t].tau,
-                        .calibration = templates[t].calibration});
+                        .hits = HitsOfClass(each.name, templates, hits),
+                        .usual_delta = UsualDeltaOf(each.name, templates, stream, threads),
+                        .tau = each.tau,
+                        .calibration = each.calibration});
   }
   return rankings;
 }
@@ -273,25 +288,28 @@ class Evaluator {
     if (fold.train.empty() || fold.test.empty()) return;
     const std::vector<const LabelledClip*> train = ClipsOf(data_, fold.train);
     const Stream stream = MakeStream(data_, fold);
-    const ClassLearningOptions learning{.learning = options_.profile,
-                                        .matching = options_.profile,
-                                        .with_contrast = AnyWithContrast(),
-                                        .unlabelled = stream.recordings,
-                                        .threads = options_.threads};
-    const std::vector<MotionTemplate> learned = LearnClasses(train, features_, learning);
-    const std::vector<Evidence> evidence =
-        GatherEvidence(train, learned, features_, options_.methods, learning);
+    const std::vector<std::vector<MotionTemplate>> learned =
+        LearnForMethods(train, features_, options_.methods,
+                        {.learning = options_.profile,
+                         .matching = options_.profile,
+                         .with_contrast = AnyWithContrast(),
+                         .unlabelled = stream.recordings,
+                         .threads = options_.threads});
     for (std::size_t m = 0; m < options_.methods.size(); ++m) {
       const Method& method = options_.methods[m];
-      std::vector<MotionTemplate> templates = ForMethod(method, learned);
-      Calibrate(evidence[m], templates);
-      ScoreFold(fold, stream, RankTemplates(method, templates, stream, options_.threads),
+      ScoreFold(fold, stream, RankTemplates(method, learned[m], stream, options_.threads),
                 method.contrast, evaluation.methods[m]);
     }
+    if (options_.baselines.empty()) return;
+    const std::vector<MotionTemplate> plain = LearnClasses(train, features_,
+                                                           {.learning = options_.profile,
+                                                            .matching = options_.profile,
+                                                            .with_contrast = false,
+                                                            .threads = options_.threads});
     for (std::size_t b = 0; b < options_.baselines.size(); ++b) {
       const auto rankings =
           internal::RankByBaseline(options_.baselines[b], {.train = train,
-                                                           .learned = learned,
+                                                           .learned = plain,
                                                            .stream = stream.takes,
                                                            .features = features_,
                                                            .matching = options_.profile,

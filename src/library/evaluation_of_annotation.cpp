@@ -94,22 +94,20 @@ std::vector<std::vector<JudgedRecording>> AnnotateActor(const EvaluationData& da
                                       .matching = options.profile,
                                       .unlabelled = parts.unlabelled,
                                       .threads = options.threads};
-  const std::vector<MotionTemplate> learned = LearnClasses(parts.train, features, learning);
-  const std::vector<Evidence> evidence =
-      GatherEvidence(parts.train, learned, features, options.methods, learning);
+  std::vector<std::vector<MotionTemplate>> learned =
+      LearnForMethods(parts.train, features, options.methods, learning);
   const std::set<std::string> names = data.ClassNames();
-  std::vector<int> classes;
-  classes.reserve(learned.size());
-  for (const MotionTemplate& each : learned) classes.push_back(NumberOf(names, each.name));
   std::vector<std::vector<JudgedRecording>> judged(options.methods.size());
   for (std::size_t m = 0; m < options.methods.size(); ++m) {
-    std::vector<MotionTemplate> templates = ForMethod(options.methods[m], learned);
-    Calibrate(evidence[m], templates);
+    std::vector<MotionTemplate> templates = std::move(learned[m]);
     if (options.background_thresholds) {
       RankOptions ranking = options.methods[m].Ranking();
       ranking.threads = options.threads;
       ChooseThresholds(parts, ranking, templates);
     }
+    std::vector<int> classes;
+    classes.reserve(templates.size());
+    for (const MotionTemplate& each : templates) classes.push_back(NumberOf(names, each.name));
     judged[m].resize(kSeeds.size());
     ParallelFor(kSeeds.size(), options.threads, [&](std::size_t i) {
       const LongTake take = MakeLongTake(parts.clips, parts.fillers, kSeeds[i]);

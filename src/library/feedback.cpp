@@ -217,7 +217,26 @@ void UpdateMatrix(const MotionTemplate& before, const Feedback& feedback, const 
   }
 }
 
-void UpdateContrast(const Feedback& feedback, const ClipChoice& choice, TemplateUpdate& update) {
+// The poses of look-alikes in the columns of the new matrix: the recordings that they were found in
+// are not at hand.
+std::vector<float> CarryLookalikes(const MotionTemplate& before, const TemplateMatrix& matrix) {
+  const std::vector<float>& old = before.contrast->places.lookalikes;
+  if (old.empty()) return {};
+  const auto columns = static_cast<std::size_t>(matrix.column_count());
+  std::vector<float> carried(columns * kPoseValues);
+  std::vector<float> counts(columns);
+  for (const AlignedColumns& cell : Align(matrix, before.matrix, before.learning).path) {
+    const std::size_t to = static_cast<std::size_t>(cell.reference) * kPoseValues;
+    const std::size_t from = static_cast<std::size_t>(cell.other) * kPoseValues;
+    for (std::size_t i = 0; i < kPoseValues; ++i) carried[to + i] += old[from + i];
+    ++counts[static_cast<std::size_t>(cell.reference)];
+  }
+  for (std::size_t i = 0; i < carried.size(); ++i) carried[i] /= counts[i / kPoseValues];
+  return carried;
+}
+
+void UpdateContrast(const MotionTemplate& before, const Feedback& feedback,
+                    const ClipChoice& choice, TemplateUpdate& update) {
   MotionTemplate& updated = update.updated;
   if (!updated.contrast) return;
   const Background background = *updated.contrast->background;
@@ -229,6 +248,7 @@ void UpdateContrast(const Feedback& feedback, const ClipChoice& choice, Template
   if (update.matrix == MatrixUpdate::kRelearned) {
     updated.contrast = MeasureContrast(updated, StreamsOf(PerformancesOf(feedback, choice)),
                                        background, counterexamples);
+    updated.contrast->places.lookalikes = CarryLookalikes(before, updated.matrix);
   } else {
     updated.contrast->entry_weights = MeasureEntryWeights(
         updated, std::max<std::size_t>(updated.clips.size(), 1), background, counterexamples);
@@ -267,7 +287,7 @@ TemplateUpdate UpdateTemplate(const MotionTemplate& motion_template, const Feedb
   }
   UpdateMatrix(motion_template, feedback, choice, options, update);
   UpdateClips(motion_template, feedback, choice, update);
-  UpdateContrast(feedback, choice, update);
+  UpdateContrast(motion_template, feedback, choice, update);
   const internal::MarkedCosts costs = CostsOf(motion_template, update.updated, feedback, choice);
   update.right = static_cast<int>(costs.right.size());
   update.wrong = static_cast<int>(costs.wrong.size());

@@ -99,8 +99,12 @@ HitExplanation ExplainRankedHit(std::span<const MotionTemplate> templates, const
   HitExplanation explanation{
       .hit = internal::ToTakeHit(ranked->hit, take, 0),
       .cells = ExplainPath(Quantize(motion_template), take.features.columns, last),
-      .matching = ranked->matching,
-      .places_cost = ranked->hit.cost - ranked->matching};
+      .matching = ranked->matching};
+  // Both are weighed alike.
+  const double poses = ranked->places + ranked->lookalikes;
+  const double cost = ranked->hit.cost - ranked->matching;
+  if (poses > 0) explanation.lookalikes_cost = cost * ranked->lookalikes / poses;
+  explanation.places_cost = cost - explanation.lookalikes_cost;
   explanation.places =
       ExplainPlaces(motion_template.contrast->places, explanation.cells, take.poses);
   explanation.hit.score = ranked->score;

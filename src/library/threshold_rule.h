@@ -9,9 +9,11 @@
 
 namespace kinebase::internal {
 
-// From right to wrong hits: a library has much more motion to go wrong in than what is known.
+// From right to wrong marks: a library has much more motion to go wrong in than what is known, and
+// those who mark do not reach all that costs little.
 inline constexpr double kThresholdShare = 1.0 / 3;
-// Of the confidence between them: at what right hits usually cost it is .97, at wrong ones .001.
+// Of the confidence between them: it falls from .99 to .01 where it is ½ half way, and from .97 to
+// .001 where it is ½ after a third.
 inline constexpr double kSteepness = 10;
 
 inline double ThresholdBetween(double right, double wrong) {

@@ -93,8 +93,10 @@ void AddCosts(const ComparedCosts& costs, internal::MatrixPicture& picture, Feat
     rows.features.push_back({.name = std::string(ToString(joint.joint)), .group = "poses"});
     picture.row_notes.push_back(CostText(joint.cost));
   }
-  picture.facts.push_back(
-      fmt::format("cost of features {:.4f} and of poses {:.4f}", of_features, of_poses));
+  std::string fact =
+      fmt::format("cost of features {:.4f} and of poses {:.4f}", of_features, of_poses);
+  if (costs.lookalikes > 0) fact += fmt::format(", of look-alikes {:.4f}", costs.lookalikes);
+  picture.facts.push_back(std::move(fact));
   picture.shaded_rows = static_cast<int>(costs.joints.size());
   std::vector<double> values;
   std::vector<internal::FoundEntry> found;

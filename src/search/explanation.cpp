@@ -62,8 +62,9 @@ std::vector<ExplainedPlace> ExplainPlaces(const PoseModel& model,
     for (std::size_t i = 0; i < pose.size(); ++i) {
       const double spread = std::sqrt(model.spread[i]);
       // What never moves in other motion says nothing: the root is always in its own place.
-      places.push_back({.off = spread > 0 ? (pose[i] - model.mean[first + i]) / spread : 0,
-                        .cost = share * internal::OffOfValue(model, first + i, i, pose[i])});
+      places.push_back(
+          {.off = spread > 0 ? (pose[i] - model.mean[first + i]) / spread : 0,
+           .cost = share * internal::OffOfValue(model, model.mean, first + i, i, pose[i])});
     }
   }
   return places;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "kinebase/templates/motion_template.h"
 
@@ -14,15 +15,19 @@ namespace kinebase::internal {
 inline constexpr double kPlacesWeight = 0.1;
 // Two spreads off is wrong; more says nothing more.
 inline constexpr double kMostOff = 4;
+// For each unit of weight: as far from what looks like the class as other motion is by and large,
+// which is one spread. Farther away is no better.
+inline constexpr double kNoLookalike = 1;
 
 // What one value adds to the distance of a pose.
+// mean   The class's or that of its look-alikes, both of the model.
 // entry  Of the model: its column and the value.
 // value  0 to kPoseValues − 1.
-[[nodiscard]] inline double OffOfValue(const PoseModel& model, std::size_t entry, std::size_t value,
-                                       float found) {
+[[nodiscard]] inline double OffOfValue(const PoseModel& model, const std::vector<float>& mean,
+                                       std::size_t entry, std::size_t value, float found) {
   const double weight = model.weight[entry];
   if (weight == 0) return 0;
-  const double off = found - model.mean[entry];
+  const double off = found - mean[entry];
   return weight * std::min(off * off / model.spread[value], kMostOff);
 }
 

@@ -20,9 +20,20 @@ double Distance(const PoseModel& model, int column, std::span<const float> pose)
   const std::size_t first = static_cast<std::size_t>(column) * kPoseValues;
   double distance = 0;
   for (std::size_t i = 0; i < pose.size(); ++i) {
-    distance += internal::OffOfValue(model, first + i, i, pose[i]);
+    distance += internal::OffOfValue(model, model.mean, first + i, i, pose[i]);
   }
   return distance;
+}
+
+// How much nearer a pose is to look-alikes than other motion is; below 0 if it is not.
+double NearnessToLookalikes(const PoseModel& model, int column, std::span<const float> pose) {
+  const std::size_t first = static_cast<std::size_t>(column) * kPoseValues;
+  double nearness = 0;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    nearness += internal::kNoLookalike * model.weight[first + i] -
+                internal::OffOfValue(model, model.lookalikes, first + i, i, pose[i]);
+  }
+  return nearness;
 }
 
 // A template that is ready, and its curve over one recording.
@@ -86,6 +97,35 @@ std::optional<Rival> FindRival(const Hit& hit, std::size_t own, std::span<const 
   return best;
 }
 
+// Whether two hits of one recording are of the same performance.
+bool ShareMost(const Hit& a, const Hit& b) {
+  const int shared = std::min(a.last, b.last) - std::max(a.first, b.first) + 1;
+  const int shorter = std::min(a.last - a.first, b.last - b.first) + 1;
+  return 2 * shared > shorter;
+}
+
+// Leaves of each performance the best hit, where templates of one name found it more than once.
+// hits  [template] of one recording, in any order.
+void SettleSiblings(std::span<const Searched> searched, std::vector<std::vector<RankedHit>>& hits) {
+  const auto is_sibling = [&](std::size_t a, std::size_t b) {
+    return a != b && searched[a].motion_template->name == searched[b].motion_template->name;
+  };
+  const std::vector<std::vector<RankedHit>> all = hits;
+  for (std::size_t t = 0; t < hits.size(); ++t) {
+    std::erase_if(hits[t], [&](const RankedHit& own) {
+      for (std::size_t other = 0; other < all.size(); ++other) {
+        if (!is_sibling(t, other)) continue;
+        const bool is_beaten = std::ranges::any_of(all[other], [&](const RankedHit& hit) {
+          const bool is_better = hit.score < own.score || (hit.score == own.score && other < t);
+          return is_better && ShareMost(hit.hit, own.hit);
+        });
+        if (is_beaten) return true;
+      }
+      return false;
+    });
+  }
+}
+
 class Ranker {
  public:
   Ranker(std::span<const Searched> searched, const RankOptions& options)
@@ -107,6 +147,7 @@ class Ranker {
         if (ranked.hit.cost <= tau) hits[t].push_back(ranked);
       }
     }
+    if (!options_.every_end) SettleSiblings(searched_, hits);
     return hits;
   }
 
@@ -149,24 +190,29 @@ class Ranker {
     RankedHit ranked{.hit = hit, .matching = hit.cost};
     const std::optional<Contrast>& contrast = searched_[t].motion_template->contrast;
     if (contrast && options_.places) {
-      ComparePoses(*contrast, searched_[t].quantized, recording, ranked);
+      ComparePoses(contrast->places, searched_[t].quantized, recording, ranked);
     }
-    ranked.hit.cost += internal::kPlacesWeight * ranked.places;
+    ranked.hit.cost += internal::kPlacesWeight * (ranked.places + ranked.lookalikes);
     if (options_.rivals) ranked.nearest = FindRival(hit, t, searched_, curves);
     if (ranked.nearest) ranked.rival = kNoRival - ranked.nearest->matching;
     ranked.score = ranked.hit.cost + kRivalWeight * ranked.rival;
     return ranked;
   }
 
-  static void ComparePoses(const Contrast& contrast, const QuantizedTemplate& quantized,
-                           const RecordingStreams& recording, RankedHit& ranked) {
+  void ComparePoses(const PoseModel& model, const QuantizedTemplate& quantized,
+                    const RecordingStreams& recording, RankedHit& ranked) const {
+    const bool has_lookalikes = options_.lookalikes && !model.lookalikes.empty();
     const std::vector<PathCell> path =
         TracePath(quantized, recording.features->columns, ranked.hit.last);
+    double nearness = 0;
     for (const PathCell& cell : path) {
-      ranked.places += Distance(contrast.places, cell.template_column,
-                                recording.poses->Column(cell.recording_column));
+      const std::span<const float> pose = recording.poses->Column(cell.recording_column);
+      ranked.places += Distance(model, cell.template_column, pose);
+      if (has_lookalikes) nearness += NearnessToLookalikes(model, cell.template_column, pose);
     }
-    ranked.places /= static_cast<double>(path.size());
+    const auto cells = static_cast<double>(path.size());
+    ranked.places /= cells;
+    ranked.lookalikes = std::max(nearness / cells, 0.0);
   }
 
   std::span<const Searched> searched_;
@@ -194,6 +240,17 @@ std::vector<std::vector<RankedHit>> RankHits(std::span<const MotionTemplate> tem
     if (of_template.size() > options.most_hits) of_template.resize(options.most_hits);
   }
   return hits;
+}
+
+std::vector<RankedHit> HitsOfClass(std::string_view name, std::span<const MotionTemplate> templates,
+                                   std::span<const std::vector<RankedHit>> hits) {
+  std::vector<RankedHit> of_class;
+  for (std::size_t t = 0; t < templates.size(); ++t) {
+    if (templates[t].name != name) continue;
+    of_class.insert(of_class.end(), hits[t].begin(), hits[t].end());
+  }
+  std::ranges::stable_sort(of_class, {}, &RankedHit::score);
+  return of_class;
 }
 
 std::optional<RankedHit> RankEnd(std::span<const MotionTemplate> templates, std::size_t which,

@@ -70,10 +70,13 @@ std::vector<int> MirrorPoseRows() {
 
 void MirrorPoses(PoseModel& model) {
   const std::vector<int> rows = MirrorPoseRows();
-  for (std::vector<float>* values : {&model.mean, &model.weight, &model.spread}) {
+  for (std::vector<float>* values :
+       {&model.mean, &model.weight, &model.spread, &model.lookalikes}) {
     MirrorRows(*values, rows);
   }
-  for (std::size_t x = 0; x < model.mean.size(); x += 3) model.mean[x] = -model.mean[x];
+  for (std::vector<float>* values : {&model.mean, &model.lookalikes}) {
+    for (std::size_t x = 0; x < values->size(); x += 3) (*values)[x] = -(*values)[x];
+  }
 }
 
 void MirrorBackground(Background& background, const std::vector<int>& features) {

@@ -17,12 +17,15 @@ bool AreWeights(const std::vector<T>& weights) {
 std::string ProblemOf(const PoseModel& model, int columns) {
   const std::size_t values = static_cast<std::size_t>(columns) * kPoseValues;
   if (model.mean.size() != values || model.weight.size() != values ||
-      model.spread.size() != kPoseValues) {
+      model.spread.size() != kPoseValues ||
+      (!model.lookalikes.empty() && model.lookalikes.size() != values)) {
     return "poses of another size than the matrix";
   }
-  const bool is_finite =
-      std::ranges::all_of(model.mean, [](float each) { return std::isfinite(each); });
-  if (!is_finite || !AreWeights(model.weight) || !AreWeights(model.spread)) {
+  const auto are_finite = [](const std::vector<float>& numbers) {
+    return std::ranges::all_of(numbers, [](float each) { return std::isfinite(each); });
+  };
+  if (!are_finite(model.mean) || !are_finite(model.lookalikes) || !AreWeights(model.weight) ||
+      !AreWeights(model.spread)) {
     return "poses with a number that is not finite, or a weight or spread below 0";
   }
   for (std::size_t i = 0; i < values; ++i) {

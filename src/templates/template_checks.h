@@ -10,10 +10,12 @@ namespace kinebase::internal {
 
 inline constexpr std::string_view kTemplateFormat = "kinebase-template";
 // Written is the first version that can hold what a template has, so that programs of its time can
-// read it: 2 brought keyframes, contrasts and calibrations, 3 marks and the contrast's background.
+// read it: 2 brought keyframes, contrasts and calibrations, 3 marks and the contrast's background,
+// 4 look-alikes.
 inline constexpr int kVersionWithKeyframes = 2;
 inline constexpr int kVersionWithMarks = 3;
-inline constexpr int kTemplateVersion = kVersionWithMarks;
+inline constexpr int kVersionWithLookalikes = 4;
+inline constexpr int kTemplateVersion = kVersionWithLookalikes;
 
 [[nodiscard]] bool IsThreshold(double tau);
 

@@ -318,7 +318,7 @@ std::vector<T> ReadRows(const ObjectReader& object, std::string_view key, int ro
 }
 
 PoseModel ReadPoseModel(const ObjectReader& object, int columns) {
-  object.AllowOnly({"spread", "mean", "weight"});
+  object.AllowOnly({"spread", "mean", "weight", "lookalikes"});
   PoseModel model{.mean = ReadRows<float>(object, "mean", columns, kPoseValues),
                   .weight = ReadRows<float>(object, "weight", columns, kPoseValues)};
   for (const double value : ReadValues(object.Array("spread"), object.NameOf("spread"), object)) {
@@ -326,6 +326,9 @@ PoseModel ReadPoseModel(const ObjectReader& object, int columns) {
   }
   if (model.spread.size() != kPoseValues) {
     object.FailAt("spread", fmt::format("a list of {} numbers", kPoseValues));
+  }
+  if (object.Has("lookalikes")) {
+    model.lookalikes = ReadRows<float>(object, "lookalikes", columns, kPoseValues);
   }
   return model;
 }
@@ -388,6 +391,9 @@ MotionTemplate ReadFields(const ObjectReader& root, std::int64_t version) {
   result.matrix = ReadMatrix(root);
   if (root.Has("contrast")) {
     result.contrast = ReadContrast(root.Object("contrast"), result.matrix);
+    if (!result.contrast->places.lookalikes.empty()) {
+      CheckVersion(root, "lookalikes", version, internal::kVersionWithLookalikes);
+    }
     const std::string problem = internal::ProblemOf(*result.contrast, result.matrix);
     if (!problem.empty()) ObjectReader::FailWith("contrast has " + problem, root.file());
   }

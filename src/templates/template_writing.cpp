@@ -153,10 +153,16 @@ std::string FormatRows(std::span<const T> numbers, std::size_t length, std::stri
 }
 
 std::string FormatPoseModel(const PoseModel& model) {
-  return fmt::format(
-      "{{\n      \"spread\": [{}],\n      \"mean\": {},\n      \"weight\": {}\n    }}",
-      fmt::join(model.spread, ", "), FormatRows(std::span(model.mean), kPoseValues, "      "),
-      FormatRows(std::span(model.weight), kPoseValues, "      "));
+  const auto rows = [](const std::vector<float>& numbers) {
+    return FormatRows(std::span(numbers), kPoseValues, "      ");
+  };
+  std::string out =
+      fmt::format("{{\n      \"spread\": [{}],\n      \"mean\": {},\n      \"weight\": {}",
+                  fmt::join(model.spread, ", "), rows(model.mean), rows(model.weight));
+  if (!model.lookalikes.empty()) {
+    out += fmt::format(",\n      \"lookalikes\": {}", rows(model.lookalikes));
+  }
+  return out + "\n    }";
 }
 
 std::string FormatBackground(const Background& background) {
@@ -183,6 +189,7 @@ std::string FormatContrast(const Contrast& contrast, const TemplateMatrix& matri
 
 int VersionFor(const MotionTemplate& motion_template) {
   const std::optional<Contrast>& contrast = motion_template.contrast;
+  if (contrast && !contrast->places.lookalikes.empty()) return internal::kVersionWithLookalikes;
   if (!motion_template.marks.empty() || (contrast && contrast->background)) {
     return internal::kVersionWithMarks;
   }

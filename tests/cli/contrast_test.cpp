@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 class ContrastCommands : public testing::Test {
@@ -43,7 +44,8 @@ TEST_F(ContrastCommands, LearnEveryClassOfAListWithThresholdAndConfidence) {
     EXPECT_EQ(learned.tau.has_value(), learned.calibration.has_value()) << name;
   }
   const fs::path squat = folder / "squat1Reps.template.json";
-  EXPECT_THAT(RunKinebase({"template", "show", squat}).out, HasSubstr("a third of the way"));
+  EXPECT_THAT(RunKinebase({"template", "show", squat}).out,
+              HasSubstr("half way from right to wrong"));
   // The plain matrix is the same as without.
   EXPECT_EQ(ReadTemplate(squat).matrix, [&] {
     const fs::path plain = library_.scratch() / "plain.json";
@@ -185,6 +187,7 @@ TEST_F(ContrastCommands, SayWhatIsMissing) {
   for (const auto& [arguments, exit_code, message] : std::vector<Wrong>{
            {{"learn", squat, "--method", "mt+", "-o", out}, 2, "--background"},
            {{"learn", squat, "--background", squat, "-o", out}, 2, "--method mt+"},
+           {{"learn", squat, "--styles", "-o", out}, 2, "--styles is for --method mt+"},
            {{"learn", "--list", list, "-o", out}, 2, "--class NAME or --all-classes"},
            {{"learn", "--list", list, "--all-classes", "--method", "mt+"}, 2, "-o FOLDER"},
            {{"learn", "--list", list, "--all-classes", "-o", out}, 2, "--method mt+"},
@@ -307,6 +310,51 @@ TEST_F(EdgesOfLearning, LearnTakesOneActorAndOneClip) {
   for (const char* name : {"squat", "kick"}) {
     const MotionTemplate learned = ReadTemplate(folder / (std::string(name) + ".template.json"));
     EXPECT_TRUE(learned.contrast && learned.tau && learned.calibration) << name;
+  }
+}
+
+// Squats and kicks as one class are done in two ways.
+TEST_F(EdgesOfLearning, LearnGivesEachStyleAFileOfItsOwn) {
+  std::string rows;
+  for (const char* actor : {"sa", "sb"}) {
+    for (const int repetition : {1, 2}) {
+      rows += Row("squat1Reps", actor, repetition, "exercise");
+      rows += Row("kickRFront1Reps", actor, repetition, "exercise");
+      rows += Row("jumpingJack1Reps", actor, repetition, "jump");
+    }
+  }
+  const std::string list = List(rows);
+  const fs::path folder = library_.scratch() / "styles";
+  const ProgramResult run = RunKinebase({"learn", "--list", list, "--all-classes", "--method",
+                                         "mt+", "--styles", "-o", folder, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out).at("templates").size(), 3);
+  const fs::path squats = folder / "exercise.template.json";
+  const fs::path kicks = folder / "exercise-2.template.json";
+  EXPECT_THAT(NamesBelow(folder),
+              ElementsAre(kicks.filename(), squats.filename(), "jump.template.json"));
+  for (const auto& [file, clip] : {std::pair{squats, "squat1Reps"}, {kicks, "kickRFront1Reps"}}) {
+    const MotionTemplate learned = ReadTemplate(file);
+    EXPECT_EQ(learned.name, "exercise");
+    EXPECT_EQ(learned.clips.size(), 4);
+    for (const TemplateClip& each : learned.clips) EXPECT_THAT(each.file, HasSubstr(clip));
+  }
+  EXPECT_EQ(ReadTemplate(squats).tau, ReadTemplate(kicks).tau);
+  // One of them alone is a class with styles too.
+  const fs::path one = library_.scratch() / "one.template.json";
+  EXPECT_EQ(RunKinebase({"learn", "--list", list, "--class", "exercise", "--method", "mt+",
+                         "--styles", "-o", one, "-q"})
+                .exit_code,
+            0);
+  EXPECT_EQ(ReadTemplate(library_.scratch() / "one-2.template.json").matrix,
+            ReadTemplate(kicks).matrix);
+  // Each clip is found by the template of its style.
+  for (const char* name : {"squat1Reps", "kickRFront1Reps"}) {
+    const auto hits =
+        RunKinebase({"search", squats, kicks, "--in", library_.Clip(name, "sb", 1), "--json", "-q"})
+            .Json()["hits"];
+    ASSERT_EQ(hits.size(), 1) << name;
+    EXPECT_EQ(hits[0]["template"], "exercise");
   }
 }
 

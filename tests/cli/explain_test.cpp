@@ -109,12 +109,12 @@ TEST_F(ExplainingWithContrast, AddsUpToTheCostThatSearchPrints) {
       {"explain", templates[0], templates[1], templates[2], "--in", clip_, "--json", "-q"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto json = run.Json();
-  EXPECT_THAT(
-      FieldsOf(json),
-      ElementsAre("template:string", "file:string", "first_frame:integer", "last_frame:integer",
-                  "start_s:number", "end_s:number", "cost:number", "features_cost:number",
-                  "poses_cost:number", "score:number", "confidence:number", "rival:object",
-                  "path:array", "features:array", "joints:array"));
+  EXPECT_THAT(FieldsOf(json),
+              ElementsAre("template:string", "file:string", "first_frame:integer",
+                          "last_frame:integer", "start_s:number", "end_s:number", "cost:number",
+                          "features_cost:number", "poses_cost:number", "lookalikes_cost:number",
+                          "score:number", "confidence:number", "rival:object", "path:array",
+                          "features:array", "joints:array"));
   for (const std::string field : {"template", "file", "first_frame", "last_frame", "start_s",
                                   "end_s", "cost", "confidence"}) {
     EXPECT_EQ(json[field], hit[field]) << field;
@@ -126,7 +126,8 @@ TEST_F(ExplainingWithContrast, AddsUpToTheCostThatSearchPrints) {
   };
   const double features = json["features_cost"];
   const double poses = json["poses_cost"];
-  EXPECT_NEAR(features + poses, json["cost"].get<double>(), 1e-12);
+  EXPECT_NEAR(features + poses + json["lookalikes_cost"].get<double>(), json["cost"].get<double>(),
+              1e-12);
   EXPECT_NEAR(sum_of("path", "cost"), features, 1e-12);
   EXPECT_NEAR(sum_of("features", "cost"), features, 1e-12);
   EXPECT_NEAR(sum_of("path", "poses_cost"), poses, 1e-12);

@@ -88,7 +88,7 @@ TEST(PossiblyRelevant, KnowsStretchesAndWholeTrials) {
             ErrorCode::kMalformedFile);
 }
 
-TEST(Calibrate, PutsTheThresholdAThirdOfTheWayToWrongHits) {
+TEST(Calibrate, PutsTheThresholdHalfWayToWrongHits) {
   const Evidence evidence = {{"a",
                               {.unseen = {{0.10, true}, {0.14, true}, {0.12, true}, {0.50, false}},
                                .seen = {{0.00, true}, {0.02, true}, {0.01, true}, {0.40, false}}}},
@@ -101,11 +101,11 @@ TEST(Calibrate, PutsTheThresholdAThirdOfTheWayToWrongHits) {
   }
   Calibrate(evidence, templates);
   // Right hits: half way between .12 and .01; the best wrong one costs .4.
-  EXPECT_NEAR(*templates[0].tau, 0.065 + (0.4 - 0.065) / 3, 1e-12);
+  EXPECT_NEAR(*templates[0].tau, 0.065 + (0.4 - 0.065) / 2, 1e-12);
   EXPECT_NEAR(Confidence(*templates[0].calibration, *templates[0].tau), 0.5, 1e-12);
   EXPECT_GT(Confidence(*templates[0].calibration, 0.065), 0.9);
   EXPECT_LT(Confidence(*templates[0].calibration, 0.4), 0.01);
-  EXPECT_NEAR(*templates[2].tau, 0.1 + (0.4 - 0.1) / 3, 1e-12);
+  EXPECT_NEAR(*templates[2].tau, 0.1 + (0.4 - 0.1) / 2, 1e-12);
   for (const std::size_t i : {1, 3, 4}) {
     EXPECT_EQ(templates[i].tau, 0.7) << i;
     EXPECT_FALSE(templates[i].calibration) << i;
@@ -140,6 +140,9 @@ TEST(EvaluationOfRealClips, ReproducesPlainTemplatesAndPassesThem) {
   EXPECT_GE(more.ap_strict, 0.94);
   EXPECT_GE(more.ap_lenient, 0.97);
   EXPECT_GE(more.classified, 0.995);
+  for (const ClassResult& each : evaluation.methods[1].classes) {
+    EXPECT_GE(each.mean.ap_lenient, 0.9) << each.class_name;
+  }
   EXPECT_LE(CalibrationError(MeasureReliability(evaluation.methods[1])), 0.05);
 }
 

@@ -114,6 +114,10 @@ TEST(UpdateTemplate, ChangesNothingButThresholdsIfNothingIsNew) {
       const std::vector<RecordingStreams> clips = {{&kClips[0].features, &kClips[0].poses},
                                                    {&kClips[1].features, &kClips[1].poses}};
       before.contrast = MeasureContrast(before, clips, MeasureBackground(clips));
+      std::vector<float>& lookalikes = before.contrast->places.lookalikes;
+      for (std::size_t i = 0; i < before.contrast->places.mean.size(); ++i) {
+        lookalikes.push_back(static_cast<float>(i));
+      }
     }
     const TemplateUpdate update = UpdateTemplate(
         before,
@@ -123,6 +127,28 @@ TEST(UpdateTemplate, ChangesNothingButThresholdsIfNothingIsNew) {
     EXPECT_EQ(update.updated.clips, before.clips);
     EXPECT_EQ(update.updated.tau, before.tau);
   }
+}
+
+TEST(UpdateTemplate, KeepsLookalikesInTheColumnsOfTheNewMatrix) {
+  MotionTemplate before = TemplateFrom(kClips);
+  const std::vector<RecordingStreams> clips = {{&kClips[0].features, &kClips[0].poses},
+                                               {&kClips[1].features, &kClips[1].poses}};
+  before.contrast = MeasureContrast(before, clips, MeasureBackground(clips));
+  // 1 where the first feature holds, 0 elsewhere.
+  for (int column = 0; column < before.matrix.column_count(); ++column) {
+    const float holds = before.matrix.Column(column)[0] > 0.5 ? 1 : 0;
+    before.contrast->places.lookalikes.insert(before.contrast->places.lookalikes.end(), kPoseValues,
+                                              holds);
+  }
+  const TakeFeatures longer = Take("c", 0b001, 19);
+  const MotionTemplate updated =
+      UpdateTemplate(before, FeedbackOn(kClips, {longer}, {{"c", 1, 39, Verdict::kRight}})).updated;
+  ASSERT_NE(updated.matrix.column_count(), before.matrix.column_count());
+  const PoseModel& places = updated.contrast->places;
+  ASSERT_EQ(places.lookalikes.size(), places.mean.size());
+  EXPECT_EQ(places.lookalikes.front(), 0);
+  EXPECT_EQ(places.lookalikes.back(), 0);
+  EXPECT_EQ(places.lookalikes[places.mean.size() / kPoseValues / 2 * kPoseValues], 1);
 }
 
 TEST(UpdateTemplate, SharpensAContrastByWrongHits) {

@@ -107,6 +107,12 @@ TEST(RankedHitExplanation, AddsUpToWhatASearchFinds) {
   }
   // The second half has the wrong poses: each cell one off, of a variance of 1, by a tenth.
   EXPECT_NEAR(ExplainRankedHit(templates, takes[0], 144).places_cost, 0.1, 1e-12);
+  EXPECT_EQ(ExplainRankedHit(templates, takes[0], 144).lookalikes_cost, 0);
+  // Look-alikes that do just that.
+  std::vector<MotionTemplate> knowing = templates;
+  knowing[0].contrast->places.lookalikes.resize(std::size_t{7} * kPoseValues);
+  EXPECT_NEAR(ExplainRankedHit(knowing, takes[0], 144).places_cost, 0.1, 1e-12);
+  EXPECT_NEAR(ExplainRankedHit(knowing, takes[0], 144).lookalikes_cost, 0.1, 1e-12);
   EXPECT_EQ(ExplainRankedHit(templates, takes[0]).hit, hits[0]);
   EXPECT_TRUE(ExplainRankedHit(templates, takes[0]).rival);
   EXPECT_FALSE(ExplainRankedHit(std::span(templates).first(1), takes[0]).rival);
@@ -170,7 +176,7 @@ TEST(RankedHitExplanation, AddsUpInRealRecordings) {
       double sum = 0;
       for (const ExplainedCell& cell : explained.cells) sum += cell.cost;
       for (const ExplainedPlace& place : explained.places) sum += place.cost;
-      EXPECT_NEAR(sum, hit.cost, 1e-12);
+      EXPECT_NEAR(sum + explained.lookalikes_cost, hit.cost, 1e-12);
     }
     std::ranges::rotate(templates, templates.begin() + 1);  // Each is explained once.
   }

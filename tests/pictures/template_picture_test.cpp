@@ -431,6 +431,11 @@ TEST_F(TemplatePicture, OfAComparisonShowsWhatPosesCost) {
                            "cost of features 0.0125 and of poses 0.2917"}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   }
+  EXPECT_EQ(svg.find("look-alikes"), std::string::npos);
+  ComparedCosts with_lookalikes = costs;
+  with_lookalikes.lookalikes = 0.05;
+  DrawComparison(columns, 30, set, "why", File("l.svg"), Overwrite::kNo, with_lookalikes);
+  EXPECT_NE(test::ReadText(File("l.svg")).find(", of look-alikes 0.0500"), std::string::npos);
   EXPECT_EQ(svg.find("0.0000"), std::string::npos);  // Rows that cost nothing say nothing.
   const std::vector<SvgElement> cells = SvgReader(svg).Named("rect", "cells");
   std::set<double> tops;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -250,6 +251,62 @@ TEST(Ranking, OfARecordingShorterThanHalfTheTemplateFindsNothing) {
     const std::vector<RecordingStreams> recordings = {recording.streams()};
     EXPECT_TRUE(RankHits(std::vector{Template("a"), Template("b")}, recordings).at(0).empty());
   }
+}
+
+// The class has 1 in the first pose value, what looks like it 0, and the spread is a half.
+TEST(Ranking, AddsHowNearPosesAreToThoseOfLookalikes) {
+  MotionTemplate knowing = Template("a");
+  knowing.contrast->places.lookalikes.assign(std::size_t{5} * kPoseValues, 0.0F);
+  const auto best = [](const MotionTemplate& motion_template, float value, bool lookalikes = true) {
+    const Recording recording(value);
+    return RankHits(std::vector{motion_template}, std::vector{recording.streams()},
+                    {.lookalikes = lookalikes})
+        .at(0)
+        .at(0);
+  };
+  // (0.25 / 0.5)² from them, (0.75 / 0.5)² from the class.
+  const RankedHit near = best(knowing, 0.25F);
+  EXPECT_NEAR(near.places, 2.25, 1e-6);
+  EXPECT_NEAR(near.lookalikes, 0.75, 1e-6);
+  EXPECT_NEAR(near.hit.cost, 0.1 * (2.25 + 0.75), 1e-6);
+  EXPECT_EQ(near.hit.cost, near.score);
+  EXPECT_NEAR(best(knowing, 0.25F, false).hit.cost, 0.225, 1e-6);
+  EXPECT_EQ(best(knowing, 1).lookalikes, 0);  // Two spreads away.
+  EXPECT_EQ(best(Template("a"), 0.25F).lookalikes, 0);
+}
+
+// Two styles: the hand at 1, and at -1. Recordings of both, and of one that is in between.
+TEST(Ranking, GivesAPerformanceToTheStyleThatFitsBest) {
+  MotionTemplate other = Template("a");
+  for (float& mean : other.contrast->places.mean) mean = -mean;
+  const std::vector<MotionTemplate> templates = {Template("a"), other};
+  const Recording right(1);
+  const Recording left(-1);
+  const Recording between(0);
+  const std::vector<RecordingStreams> recordings = {right.streams(), left.streams(),
+                                                    between.streams()};
+  const auto hits = RankHits(templates, recordings);
+  const auto of_recording = [](const std::vector<RankedHit>& all, int recording) {
+    return std::ranges::count(all, recording, [](const RankedHit& hit) {
+      return hit.matching == 0 ? hit.hit.recording : -1;
+    });
+  };
+  EXPECT_EQ(of_recording(hits[0], 0), 1);
+  EXPECT_EQ(of_recording(hits[1], 0), 0);
+  EXPECT_EQ(of_recording(hits[0], 1), 0);
+  EXPECT_EQ(of_recording(hits[1], 1), 1);
+  EXPECT_EQ(of_recording(hits[0], 2), 1);  // Of equals the first.
+  EXPECT_EQ(of_recording(hits[1], 2), 0);
+  const std::vector<RankedHit> of_class = HitsOfClass("a", templates, hits);
+  EXPECT_EQ(of_class.size(), hits[0].size() + hits[1].size());
+  EXPECT_TRUE(std::ranges::is_sorted(of_class, {}, &RankedHit::score));
+  EXPECT_TRUE(HitsOfClass("b", templates, hits).empty());
+  // Classes of other names keep theirs.
+  std::vector<MotionTemplate> strangers = templates;
+  strangers[1].name = "b";
+  const auto apart = RankHits(strangers, recordings);
+  EXPECT_EQ(of_recording(apart[1], 0), 1);
+  EXPECT_EQ(of_recording(apart[1], 2), 1);
 }
 
 TEST(Ranking, LetsTemplatesCompeteThatLookAtDisjointFeatures) {

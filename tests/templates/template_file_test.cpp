@@ -89,6 +89,20 @@ MotionTemplate SampleWithMarks() {
   return result;
 }
 
+// The same with look-alikes; they came with version 4.
+MotionTemplate SampleWithLookalikes() {
+  MotionTemplate result = SampleTemplate();
+  Contrast contrast{.entry_weights = {0.5, 0.5, 0, 0.25, 0.25, 0.5, 1, 0, 0}};
+  contrast.places.spread.assign(kPoseValues, 2);
+  for (int i = 0; i < 3 * kPoseValues; ++i) {
+    contrast.places.mean.push_back(static_cast<float>(i % kPoseValues));
+    contrast.places.weight.push_back(i % kPoseValues == 1 ? 1.0F : 0.0F);
+    contrast.places.lookalikes.push_back(static_cast<float>(i % kPoseValues) / 4);
+  }
+  result.contrast = std::move(contrast);
+  return result;
+}
+
 Keyframe RandomKeyframe(Random& random, const MotionTemplate& motion_template, int column) {
   Keyframe keyframe{.column = column, .tested = 1};
   keyframe.tested |= random.Word() >> (64 - motion_template.matrix.feature_count);
@@ -127,6 +141,9 @@ MotionTemplate RandomTemplate(Random& random) {
   if (result.contrast && random.Below(2) == 0) {
     result.contrast->background = RandomBackground(random, result.matrix.feature_count);
   }
+  if (result.contrast && random.Below(2) == 0) {
+    result.contrast->places.lookalikes = RandomPoses(random, result.matrix.column_count()).mean;
+  }
   for (int i = random.Below(3); i > 0; --i) {
     const std::int64_t first = 1 + random.Below(1000);
     const Verdict verdict = random.Below(2) == 0 ? Verdict::kRight : Verdict::kWrong;
@@ -148,6 +165,11 @@ TEST(TemplateFile, OpensVersionTwo) {
 TEST(TemplateFile, OpensVersionThree) {
   EXPECT_EQ(ReadTemplate(SamplePath(3)), SampleWithMarks());
   EXPECT_EQ(FormatTemplate(SampleWithMarks()), ReadText(SamplePath(3)));
+}
+
+TEST(TemplateFile, OpensVersionFour) {
+  EXPECT_EQ(ReadTemplate(SamplePath(4)), SampleWithLookalikes());
+  EXPECT_EQ(FormatTemplate(SampleWithLookalikes()), ReadText(SamplePath(4)));
 }
 
 TEST(TemplateFile, IsWrittenInTheFirstVersionThatCanHoldIt) {
@@ -208,12 +230,12 @@ TEST(TemplateFile, WritesAFileAndNeverOverAnotherUnasked) {
 
 TEST(TemplateFile, RefusesANewerVersionInPlainWords) {
   json document = json::parse(FormatTemplate(SampleTemplate()));
-  document["version"] = 4;
+  document["version"] = 5;
   document["invention"] = "of tomorrow";
   const Error error = ErrorOf([&] { (void)ParseTemplate(document.dump(), "new.json"); });
   EXPECT_EQ(error.code(), ErrorCode::kMismatch);
   EXPECT_THAT(error.what(), HasSubstr("new.json"));
-  EXPECT_THAT(error.what(), HasSubstr("version 4"));
+  EXPECT_THAT(error.what(), HasSubstr("version 5"));
   EXPECT_THAT(error.what(), HasSubstr("newer Kinebase"));
 }
 
@@ -230,6 +252,12 @@ TEST(TemplateFile, IsOfVersionTwoOnlyIfItNeedsToBe) {
   EXPECT_EQ(version(), 2);
   motion_template.contrast->background = RandomBackground(random, 3);
   EXPECT_EQ(version(), 3);
+  motion_template.contrast->places.lookalikes = motion_template.contrast->places.mean;
+  EXPECT_EQ(version(), 4);
+  json early = json::parse(FormatTemplate(motion_template));
+  early["version"] = 3;
+  EXPECT_THAT(ErrorOf([&] { (void)ParseTemplate(early.dump(), "early.json"); }).what(),
+              HasSubstr("lookalikes in a file of version 3; they came with 4"));
 }
 
 TEST(TemplateFile, RefusesAContrastThatDoesNotFit) {
@@ -253,6 +281,7 @@ TEST(TemplateFile, RefusesAContrastThatDoesNotFit) {
            {"/contrast/places/weight/0/0", "much", "expected a number"},
            {"/contrast/places", 7, "an object"},
            {"/contrast/places/mode", 7, "unknown field"},
+           {"/contrast/places/lookalikes", json::array({1, 2}), "each of the 3 columns"},
            {"/calibration/slope", "steep", "a number"},
        }) {
     json bad = good;

@@ -27,16 +27,20 @@ struct LabelledClip {
 
 // Which ingredients of retrieval are on.
 struct Method {
-  std::string_view name;  // "mt", "mt+" …
-  bool contrast = false;  // Entry weights from a background.
-  bool places = false;    // Poses count too,
-  bool rivals = false;    // and hits are ordered by what other classes' templates say as well.
+  std::string_view name;    // "mt", "mt+" …
+  bool contrast = false;    // Entry weights from a background.
+  bool places = false;      // Poses count too,
+  bool lookalikes = false;  // beside those of what looks like the class,
+  bool rivals = false;      // and hits are ordered by what other classes' templates say as well.
+  bool styles = false;      // Several templates a class, where its clips fall into groups.
 
-  [[nodiscard]] RankOptions Ranking() const { return {.places = places, .rivals = rivals}; }
+  [[nodiscard]] RankOptions Ranking() const {
+    return {.places = places, .lookalikes = lookalikes, .rivals = rivals};
+  }
 };
 
 // "mt", which is the paper's, and "mt+", which is all; the ingredients added one by one:
-// "mt+weights", "mt+places".
+// "mt+weights", "mt+places", "mt+lookalikes". "mt+styles" is mt+ with styles.
 [[nodiscard]] std::span<const Method> RetrievalMethods();
 [[nodiscard]] const Method* FindMethod(std::string_view name);
 
@@ -64,6 +68,7 @@ struct ClassLearningOptions {
   Profile matching = Profile::kBonn;
   int max_rounds = 10;
   bool with_contrast = true;
+  bool with_styles = false;  // Several templates a class, where templates/styles.h finds them.
   // Recordings of motion in general, without labels, whose poses count for the background; best
   // those that will be searched.
   std::span<const RecordingStreams> unlabelled;
@@ -71,9 +76,15 @@ struct ClassLearningOptions {
   ProgressCallback progress;
 };
 
-// One template for each class of the clips, by name. The background is all clips, of all classes,
-// and what is not labelled; where there is one class alone, how often features are one is measured
-// on that, too.
+// One template for each class of the clips, by name; with styles, one for each style of a class,
+// next to each other and of the same name. The background is all clips, of all classes, and what is
+// not labelled; where there is one class alone, how often features are one is measured on that,
+// too.
+//
+// Walking agrees with sneaking in every feature; what tells them apart is a little in many joints.
+// So a template with a contrast also keeps the mean poses of its hundred best hits in the clips of
+// other classes and in what is not labelled. Some of the latter may be right, but few of so many.
+//
 // Errors  InvalidArgument: no clips, other features than the set's; Cancelled.
 // Cost    Of LearnTemplate for each class.
 [[nodiscard]] std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> clips,
@@ -93,8 +104,8 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 // take the place of actors. Where nothing is left to learn a class from (one clip, one actor who
 // performs it), nothing unseen is known of it.
 //
-// templates  As LearnClasses gives them, with contrasts if a method asks for that.
-// methods    The result is for each of them.
+// templates  As LearnClasses gives them by these options, with contrasts if a method asks for that.
+// methods    The result is for each of them; whether they ask for styles is for the options to say.
 // Errors     As LearnClasses.
 // Cost       Of LearnClasses for each actor.
 [[nodiscard]] std::vector<Evidence> GatherEvidence(std::span<const LabelledClip* const> clips,
@@ -109,16 +120,23 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
                                                       std::string_view class_name,
                                                       std::span<const LabelledClip* const> clips);
 
-// Gives each template its threshold and confidence, by its name, from training clips alone.
+// Gives each template its threshold and confidence, by its name, from training clips alone. Styles
+// of a class have one threshold.
 //
 // A right hit of somebody new costs more than those in the clips that were learned from, and less
 // than those in clips that were held back, when there was less to learn from: half way between the
-// two medians. The threshold lies a third of the way from there to the best wrong hit in any clip:
-// a library has much more motion to go wrong in than the clips of other classes. At the threshold
-// the confidence is ½. Of a class that is learned alone, wrong is the median of the
+// two medians. The threshold lies half way from there to the best wrong hit in any clip. At the
+// threshold the confidence is ½. Of a class that is learned alone, wrong is the median of the
 // recordings without labels. Where nothing unseen is known of a class, those that were learned from
 // decide alone, and the threshold is low. A class without right or wrong hits, or whose wrong hits
 // cost no more than its right ones, keeps what it has.
 void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates);
+
+// What each method searches with: templates as LearnClasses, GatherEvidence and Calibrate make
+// them. options.with_styles  Each method decides it. Errors, cost         As GatherEvidence, twice
+// where methods with and without styles are asked for.
+[[nodiscard]] std::vector<std::vector<MotionTemplate>> LearnForMethods(
+    std::span<const LabelledClip* const> clips, const FeatureSet& features,
+    std::span<const Method> methods, const ClassLearningOptions& options = {});
 
 }  // namespace kinebase

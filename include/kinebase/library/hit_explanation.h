@@ -24,7 +24,8 @@ struct HitExplanation {
   std::vector<ExplainedCell> cells;  // The path, from its first column to its last.
   // Of a template with a contrast only.
   double matching = 0;                 // What features add to the hit's cost,
-  double places_cost = 0;              // and what poses add; together they are the cost.
+  double places_cost = 0;              // what poses add that are not the class's,
+  double lookalikes_cost = 0;          // and those of look-alikes; together they are the cost.
   std::vector<ExplainedPlace> places;  // [cell × kPoseValues]
   std::optional<ExplainedRival> rival;
 };

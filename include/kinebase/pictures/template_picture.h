@@ -71,6 +71,7 @@ struct ComparedJoint {
 struct ComparedCosts {
   std::vector<double> features;  // [feature]
   std::vector<ComparedJoint> joints;
+  double lookalikes = 0;  // For poses that are rather those of what looks like the class.
 };
 
 // Each row twice: above what the template asks for (black = must not hold, white = must hold, gray

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "kinebase/core/progress.h"
@@ -19,8 +20,9 @@ namespace kinebase {
 
 struct RankOptions {
   // The ingredients beside the template itself; each may be left out.
-  bool places = true;  // How joints lie along the path, against what the class does.
-  bool rivals = true;  // What other templates say of the same stretch.
+  bool places = true;      // How joints lie along the path, against what the class does.
+  bool lookalikes = true;  // Where places count: whether they are rather those of look-alikes.
+  bool rivals = true;      // What other templates say of the same stretch.
   // On the cost. Empty: each template's own, and no limit where it has none.
   std::optional<double> tau = std::numeric_limits<double>::infinity();
   // Every column where a path ends, instead of hits alone: for those who choose among them.
@@ -41,9 +43,12 @@ struct Rival {
 };
 
 struct RankedHit {
-  Hit hit;              // Its cost is Δ and places, weighed and added.
+  Hit hit;              // Its cost is Δ, places and look-alikes, weighed and added.
   double matching = 0;  // Δ of the template, with its entry weights.
   double places = 0;    // Mean over the path, in units of the background's variance; at most 4.
+  // 1 less the same distance from what looks like the class and is not; 0 where it is farther, or
+  // the template knows of none.
+  double lookalikes = 0;
   std::optional<Rival> nearest;  // The other class's that fits best there, if any does.
   double rival = 0;              // ½ less its Δ; 0 where there is none.
   double score = 0;  // The cost and the rival, weighed: what hits are ordered by. Rivals do not
@@ -51,7 +56,8 @@ struct RankedHit {
 };
 
 // For each template its hits, by score. Templates of the same name are no rivals: they stand for
-// one class in several ways. Those without a contrast are ranked by Δ and rivals alone.
+// one class in several styles. Of their hits that share more than half of the shorter one only the
+// best is given. Templates without a contrast are ranked by Δ and rivals alone.
 //
 // Errors   Mismatch if a recording has another rate or feature count than a template, or no pose
 // for
@@ -61,6 +67,11 @@ struct RankedHit {
 [[nodiscard]] std::vector<std::vector<RankedHit>> RankHits(
     std::span<const MotionTemplate> templates, std::span<const RecordingStreams> recordings,
     const RankOptions& options = {});
+
+// The hits of all templates of one name, by score: what RankHits found of the class.
+[[nodiscard]] std::vector<RankedHit> HitsOfClass(std::string_view name,
+                                                 std::span<const MotionTemplate> templates,
+                                                 std::span<const std::vector<RankedHit>> hits);
 
 // What RankHits would give for one path, whatever it costs: that of templates[which] which ends
 // with a column of the recording; nothing where none ends.

@@ -70,6 +70,9 @@ struct PoseModel {
   std::vector<float> mean;    // [column × kPoseValues]
   std::vector<float> weight;  // [column × kPoseValues]; each column sums to 1.
   std::vector<float> spread;  // [kPoseValues] variance of other motion.
+  // [column × kPoseValues] mean of what matches the class best and is mostly something else; may be
+  // empty. library/class_learning.h says where it comes from.
+  std::vector<float> lookalikes;
 
   friend bool operator==(const PoseModel&, const PoseModel&) = default;
 };
