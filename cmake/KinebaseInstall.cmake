@@ -25,7 +25,7 @@ install(FILES ${PROJECT_BINARY_DIR}/kinebaseConfig.cmake
 list(REVERSE layers)
 list(TRANSFORM layers PREPEND "-l" OUTPUT_VARIABLE pc_libraries)
 list(JOIN pc_libraries " " pc_libraries)
-set(pc_dependencies "libhwy tomlplusplus cairo tbb zlib libzip tinygltf")
+set(pc_dependencies "libhwy tomlplusplus cairo tbb zlib libzip tinygltf sqlite3 libxxhash")
 if(BUILD_SHARED_LIBS)
   set(pc_requires "eigen3 fmt")
   set(pc_requires_private ${pc_dependencies})

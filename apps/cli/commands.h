@@ -20,6 +20,8 @@ void AddSearchCommand(CLI::App& program, int& exit_code);
 void AddExplainCommand(CLI::App& program, int& exit_code);
 void AddEvaluateCommand(CLI::App& program, int& exit_code);
 void AddAnnotateCommand(CLI::App& program, int& exit_code);
+void AddImportCommand(CLI::App& program, int& exit_code);
+void AddLibraryCommand(CLI::App& program, int& exit_code);
 void AddSynthCommand(CLI::App& program, int& exit_code);
 void AddHdm05Command(CLI::App& program, int& exit_code);
 void AddManualCommands(CLI::App& program, int& exit_code);  // manual, completion

@@ -73,6 +73,8 @@ int RunProgram(int argc, char** argv) {
   kinebase::cli::AddExplainCommand(program, exit_code);
   kinebase::cli::AddEvaluateCommand(program, exit_code);
   kinebase::cli::AddAnnotateCommand(program, exit_code);
+  kinebase::cli::AddImportCommand(program, exit_code);
+  kinebase::cli::AddLibraryCommand(program, exit_code);
   kinebase::cli::AddSynthCommand(program, exit_code);
   kinebase::cli::AddHdm05Command(program, exit_code);
   kinebase::cli::AddManualCommands(program, exit_code);

@@ -10,10 +10,12 @@
 #include "cli/feature_options.h"
 #include "cli/search_curve.h"
 #include "cli/search_output.h"
+#include "cli/take_filter.h"
 #include "fmt/format.h"
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/features/vocabulary.h"
+#include "kinebase/library/take_library.h"
 #include "kinebase/library/take_search.h"
 #include "kinebase/library/takes.h"
 #include "kinebase/templates/calibration.h"
@@ -28,6 +30,8 @@ struct SearchCommandOptions {
   CommonOptions common;
   std::vector<std::filesystem::path> templates;
   std::vector<std::filesystem::path> paths;
+  std::filesystem::path library;  // Instead of paths.
+  TakeFilter filter;
   std::optional<double> tau;
   std::optional<double> confidence;
   std::size_t most_hits = 500;
@@ -65,6 +69,9 @@ void CheckUsage(const SearchCommandOptions& options) {
   if (options.common.json && options.Format() != "json") {
     throw UsageError(fmt::format("--json and --format {} both ask for standard output; leave one",
                                  options.format));
+  }
+  if (options.paths.empty() && options.library.empty()) {
+    throw UsageError("--in is required, or --library; see 'kinebase search --help'");
   }
   if (options.fuzzy && options.features.empty()) {
     throw UsageError("--fuzzy needs the features that count: --features rknee bent,lknee bent");
@@ -305,6 +312,32 @@ void WriteCurve(std::span<const Query> queries, const std::map<FeatureKey, Searc
   }
 }
 
+// Where takes come from: files that are read anew, or a library that has their features.
+class TakeSource {
+ public:
+  explicit TakeSource(const SearchCommandOptions& options) : options_(options) {
+    if (!options.library.empty()) {
+      library_.emplace(options.library);
+      return;
+    }
+    for (auto& file : FindMotionFiles(options.paths)) {
+      stretches_.push_back({.file = std::move(file)});
+    }
+  }
+
+  [[nodiscard]] TakeBatch Load(const FeatureSet& features, double rate_hz, bool with_poses,
+                               const ProgressCallback& progress) const {
+    if (library_) return library_->Load(features, rate_hz, options_.filter, with_poses);
+    return LoadManyTakeFeatures(stretches_, features, rate_hz, options_.common.load,
+                                options_.common.threads, progress, {.poses = with_poses});
+  }
+
+ private:
+  const SearchCommandOptions& options_;
+  std::optional<TakeLibrary> library_;
+  std::vector<TakeStretch> stretches_;
+};
+
 int Run(const SearchCommandOptions& options) {
   const Stopwatch watch;
   CheckUsage(options);
@@ -313,8 +346,7 @@ int Run(const SearchCommandOptions& options) {
   for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
   std::vector<SegmentLabel> labels;
   if (!options.labels.empty()) labels = ReadSegmentLabels(options.labels);
-  std::vector<TakeStretch> stretches;
-  for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
+  const TakeSource source(options);
 
   const ProgressCallback progress = MakeProgress(options.common);
   std::map<FeatureKey, SearchedTakes> batches;
@@ -333,8 +365,7 @@ int Run(const SearchCommandOptions& options) {
     const auto [entry, is_new] = batches.try_emplace(key);
     SearchedTakes& takes = entry->second;
     if (is_new) {
-      takes.batch = LoadManyTakeFeatures(stretches, query.features, key.second, options.common.load,
-                                         options.common.threads, progress, {.poses = with_poses});
+      takes.batch = source.Load(query.features, key.second, with_poses, progress);
     }
     if (query.motion_template.contrast) {
       together[key].push_back(i);
@@ -390,9 +421,16 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   CLI::App* command =
       program.add_subcommand("search", "Find every place where a motion class happens");
   command->add_option("TEMPLATE", options->templates, "Template files, from learn")->required();
-  command->add_option("--in", options->paths, "Motion files and folders to search")
-      ->required()
-      ->type_name("PATH");
+  auto* paths = command->add_option("--in", options->paths, "Motion files and folders to search")
+                    ->type_name("PATH");
+  auto* library = command
+                      ->add_option("--library", options->library,
+                                   "Library to search instead, from kinebase import")
+                      ->excludes(paths)
+                      ->type_name("FOLDER");
+  for (CLI::Option* filter : AddTakeFilterOptions(*command, options->filter)) {
+    filter->needs(library);
+  }
   command
       ->add_option("--tau", options->tau,
                    "Largest cost of a hit (default: the template's own, else 0.06); 1 lists all")
@@ -437,6 +475,7 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  kinebase search squat.template.json --in recordings/ --tau 0.04\n"
+      "  kinebase search squat.template.json --library motion.kinebase --actors bd\n"
       "  kinebase search squat.template.json --in recordings/ --fuzzy --features \"rknee "
       "bent,lknee "
       "bent\"");

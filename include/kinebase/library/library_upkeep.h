@@ -1,0 +1,51 @@
+// Checking a library on disk, and taking takes out of it.
+//
+// Read library/take_library.h first.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kinebase/core/progress.h"
+#include "kinebase/library/take_library.h"
+
+namespace kinebase {
+
+struct VerifyReport {
+  std::int64_t takes = 0;
+  std::int64_t segment_bytes = 0;
+  std::vector<TakeFailure> damaged;  // Takes that cannot be read, by path, with the segment.
+  // Files of an import that was cut short, or still goes on; the next import removes them.
+  std::vector<std::filesystem::path> leftovers;
+};
+
+// Reads everything and compares all checksums.
+// Errors  Those of TakeLibrary; MalformedFile if the catalogue is damaged; Cancelled.
+// Cost    O(bytes of the library).
+[[nodiscard]] VerifyReport VerifyLibrary(const std::filesystem::path& library, int threads = 0,
+                                         const ProgressCallback& progress = {});
+
+// Which takes to remove: those of the names, of the filter, and damaged ones; each that is given
+// has to hold.
+struct Removal {
+  // Paths of files as the library has them, or below this folder, or the names of files alone.
+  std::vector<std::filesystem::path> names;
+  TakeFilter filter;
+  bool damaged = false;
+};
+
+// Removes takes, and segment files that hold no other; in files that hold others their room stays
+// taken. Says which. All or none, whatever happens.
+//
+// Errors  Those of TakeLibrary; InvalidArgument if nothing was asked for; NotFound for a name,
+//         actor or class that is not there; IoFailure if somebody else is writing.
+std::vector<std::filesystem::path> RemoveTakes(const std::filesystem::path& library,
+                                               const Removal& removal);
+
+// The takes as a list of clips: file,class,actor,take,format,frames,rate_hz, a row a take. It can
+// be learned from, evaluated and imported again.
+[[nodiscard]] std::string FormatTakeList(std::span<const StoredTake> takes);
+
+}  // namespace kinebase

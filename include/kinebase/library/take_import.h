@@ -1,0 +1,77 @@
+// Putting takes into a library on disk.
+//
+// Read library/take_library.h first.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinebase/library/takes.h"
+
+namespace kinebase {
+
+// A file to import, and what a list says of it; empty: what its name says.
+struct ImportSource {
+  std::filesystem::path file;
+  std::string class_name;
+  std::string actor;
+};
+
+enum class ImportState {
+  kAdded,      // New in the library.
+  kUpdated,    // Was there; its contents, class, actor, features or poses are others now.
+  kUnchanged,  // Was there; nothing was read but the bytes of the file.
+};
+
+struct ImportedTake {
+  std::filesystem::path path;  // As the library has it.
+  ImportState state = ImportState::kAdded;
+  std::int64_t frame_count = 0;
+  Diagnostics diagnostics;  // Empty for what was not read.
+};
+
+struct ImportOptions {
+  FeatureSet features;
+  double rate_hz = 30;
+  bool with_poses = false;
+  LoadOptions load;
+  int threads = 0;
+  int takes_per_batch = 64;  // What becomes durable, or is lost in a crash, together.
+  ProgressCallback progress;
+  // Hears of each take once it will be there whatever happens.
+  std::function<void(const ImportedTake& take)> on_durable;
+};
+
+struct ImportReport {
+  std::int64_t added = 0;
+  std::int64_t updated = 0;
+  std::int64_t unchanged = 0;
+  std::int64_t frames = 0;            // Of takes that were read.
+  std::vector<TakeFailure> failures;  // Files that could not be read; the others are in.
+};
+
+// Adds the files to a library, which is made where there is none. A take is known by the path of
+// its file, resolved, and stays as it is while the bytes of the file and its skeleton and the
+// options of reading are the same; features of the same bytes are never computed twice.
+//
+// Errors   IoFailure: another import is running, a full disk; InvalidArgument: a folder that holds
+//          other things; Mismatch, MalformedFile: the library is newer or damaged; Cancelled. What
+//          on_durable heard of stays.
+// Cost     Of reading the files, batch by batch; memory for the recordings of `threads` files and
+//          the features of a batch.
+// Threads  One import a library at a time; readers may go on meanwhile.
+ImportReport ImportTakes(const std::filesystem::path& library,
+                         std::span<const ImportSource> sources, const ImportOptions& options);
+
+// The clips of a list (columns file, class, actor, …), looked up as ReadClipList does. Those that
+// are nowhere go into `failures`.
+// Errors  As ReadClipList.
+[[nodiscard]] std::vector<ImportSource> ListedSources(
+    const std::filesystem::path& list, std::span<const std::filesystem::path> folders,
+    std::vector<TakeFailure>& failures);
+
+}  // namespace kinebase

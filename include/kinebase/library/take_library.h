@@ -1,0 +1,122 @@
+// A library on disk: many takes in one folder, read once and searched ever after.
+//
+// library/take_import.h puts takes in, library/library_upkeep.h checks and removes them;
+// docs/design/library.md says how a library is laid out and why a crash does it no harm.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "kinebase/library/segment_file.h"
+#include "kinebase/library/takes.h"
+
+namespace kinebase {
+
+// Where the features of a take are, as one set has them at one rate.
+struct StoredFeatures {
+  std::uint64_t feature_set_hash = 0;
+  double rate_hz = 0;
+  std::int64_t segment = 0;  // Number of the segment file.
+  int slot = 0;              // Take of the segment.
+  bool has_poses = false;
+
+  friend bool operator==(const StoredFeatures&, const StoredFeatures&) = default;
+};
+
+// What the catalogue knows of a take.
+struct StoredTake {
+  std::int64_t id = 0;
+  std::filesystem::path path;  // Of the file that it was read from; absolute.
+  ContentKey content = {};
+  std::string format;  // "ASF/AMC".
+  TakeName name;       // By the file's name, or a list of clips. Its rate is not kept.
+  double rate_hz = 0;  // Of the file.
+  std::int64_t frame_count = 0;
+  std::vector<StoredFeatures> features;  // At least one.
+};
+
+// Which takes are meant; what is empty leaves all.
+struct TakeFilter {
+  std::vector<std::string> actors;
+  std::vector<std::string> classes;
+
+  [[nodiscard]] bool Accepts(const StoredTake& take) const;
+};
+
+// A set of features that takes of a library have.
+struct StoredFeatureSet {
+  std::uint64_t hash = 0;
+  std::string name;
+  double rate_hz = 0;
+  std::int64_t takes = 0;
+
+  friend bool operator==(const StoredFeatureSet&, const StoredFeatureSet&) = default;
+};
+
+// A library as it was when it was opened. What others add or remove meanwhile changes nothing of
+// it: segment files do not change, and stay mapped when they are removed.
+class TakeLibrary {
+ public:
+  // Errors  NotFound if the folder is no library; Mismatch for one of a newer version;
+  //         MalformedFile if its catalogue is damaged; IoFailure.
+  // Cost    O(takes).
+  explicit TakeLibrary(const std::filesystem::path& folder);
+
+  [[nodiscard]] const std::vector<StoredTake>& takes() const { return takes_; }  // By path.
+  [[nodiscard]] const std::vector<StoredFeatureSet>& feature_sets() const { return feature_sets_; }
+  [[nodiscard]] std::int64_t segment_bytes() const { return segment_bytes_; }
+  [[nodiscard]] std::vector<std::int64_t> segments() const;  // Their numbers.
+
+  // Errors  NotFound for an actor or class of the filter that no take has, naming those that there
+  //         are.
+  void CheckFilter(const TakeFilter& filter) const;
+
+  // The words of a take where they are in its segment file; valid as long as the library lives.
+  // Errors  NotFound if the take has no such features; MalformedFile, NotFound or IoFailure if its
+  //         segment is damaged, missing or unreadable, naming it and what to do.
+  // Cost    O(columns), at the speed of memory: the checksum is compared.
+  [[nodiscard]] std::span<const std::uint64_t> Columns(const StoredTake& take,
+                                                       std::uint64_t feature_set_hash,
+                                                       double rate_hz) const;
+
+  // Where the joints were, at the rate of the features; the error is that of PackPoses.
+  // Errors  As Columns; NotFound for a take that was imported without poses.
+  [[nodiscard]] JointTrajectories Poses(const StoredTake& take, std::uint64_t feature_set_hash,
+                                        double rate_hz) const;
+
+  // Reads all that there is of a take and compares checksums.
+  // Errors  As Columns.
+  void Check(const StoredTake& take) const;
+
+  // The takes that the filter leaves as LoadManyTakeFeatures gives them, without diagnostics. A
+  // take that cannot be read is a failure. Poses are computed from stored ones: body sizes 1e-4.
+  //
+  // Errors  NotFound if no take is left, naming actors and classes that there are; if none of them
+  //         has these features, or poses where they are asked for, naming the way to get them.
+  [[nodiscard]] TakeBatch Load(const FeatureSet& features, double rate_hz,
+                               const TakeFilter& filter = {}, bool with_poses = false) const;
+
+ private:
+  // The entry of a take, and its segment.
+  struct Location {
+    const SegmentReader* segment = nullptr;
+    int slot = 0;
+  };
+  [[nodiscard]] Location Find(const StoredTake& take, std::uint64_t feature_set_hash,
+                              double rate_hz) const;
+  [[nodiscard]] TakeFeatures LoadTake(const StoredTake& take, const FeatureSet& features,
+                                      double rate_hz, bool with_poses) const;
+
+  std::filesystem::path folder_;
+  std::vector<StoredTake> takes_;
+  std::vector<StoredFeatureSet> feature_sets_;
+  std::map<std::int64_t, std::variant<SegmentFile, Error>> segments_;
+  std::int64_t segment_bytes_ = 0;
+};
+
+}  // namespace kinebase

@@ -1,0 +1,65 @@
+// The catalogue of a library: which takes there are and where their features are. Internal.
+//
+//   takes     id, path, content, format, actor, class, take, rate_hz, frames
+//   features  take, feature_set, rate_hz, segment, slot, poses: where in which segment file
+//   segments  id, bytes: the segment files that count; others are leftovers
+//   feature_sets  hash, name
+//
+// Names of files are stored byte by byte. Hashes are SQLite's signed numbers of 64 bits; the key of
+// a content is 32 hexadecimal digits. PRAGMA user_version is the version, 1; application_id is
+// "KINE". A rollback journal (and no write-ahead log), for a library is then one file at rest,
+// works on any file system, and a reader keeps a segment from being removed by its short
+// transaction.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kinebase/library/take_library.h"
+#include "library/sqlite_database.h"
+
+namespace kinebase::internal {
+
+// Errors  NotFound if the folder has none.
+void CheckIsLibrary(const std::filesystem::path& library);
+
+class Catalogue {
+ public:
+  // kCreate makes what is missing, and is for whoever holds the lock.
+  // Errors  Of all members: those of SqliteDatabase. Here also Mismatch for a newer version, and
+  //         for a database of another program.
+  Catalogue(const std::filesystem::path& library, SqliteDatabase::Access access);
+
+  [[nodiscard]] const SqliteDatabase& database() const { return database_; }
+
+  // Inside of one transaction, where several answers are to fit together.
+  [[nodiscard]] std::vector<StoredTake> Takes() const;  // By path.
+  [[nodiscard]] std::vector<StoredFeatureSet> FeatureSets() const;
+  [[nodiscard]] std::vector<std::int64_t> Segments() const;
+  [[nodiscard]] std::int64_t SegmentBytes() const;
+  [[nodiscard]] std::int64_t NextSegment() const;
+
+  // Inside of a transaction that writes.
+  void AddFeatureSet(const FeatureSet& features);
+  void AddSegment(std::int64_t segment, std::int64_t bytes);
+  void PutTake(const StoredTake& take);  // Adds it, or replaces the one of its path.
+  void RemoveTake(std::int64_t id);
+  [[nodiscard]] std::vector<std::int64_t> DropUnusedSegments();  // Their numbers.
+
+  // What is wrong with the file as a whole; empty: nothing. Cost  O(bytes of the file).
+  [[nodiscard]] std::string Check() const;
+
+ private:
+  void PrepareSchema();
+
+  SqliteDatabase database_;
+  bool is_empty_ = false;  // As a crash right after its making leaves it.
+};
+
+// Segment files that the catalogue does not know, and unfinished ones.
+[[nodiscard]] std::vector<std::filesystem::path> FindLeftovers(
+    const std::filesystem::path& library, std::span<const std::int64_t> segments);
+
+}  // namespace kinebase::internal

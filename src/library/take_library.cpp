@@ -1,0 +1,222 @@
+#include "kinebase/library/take_library.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "fmt/format.h"
+#include "fmt/ranges.h"
+#include "kinebase/features/pose_stream.h"
+#include "library/catalogue.h"
+#include "library/library_layout.h"
+
+namespace kinebase {
+namespace {
+
+namespace fs = std::filesystem;
+using internal::Catalogue;
+using internal::SqliteDatabase;
+using internal::SqliteTransaction;
+
+constexpr std::string_view kRemedy =
+    "run 'kinebase library remove LIBRARY --damaged' and import its files again";
+
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::ranges::find(names, name) != names.end();
+}
+
+// What the filter may be right about and the library has not.
+void CheckNames(const std::vector<std::string>& asked, const std::set<std::string>& there,
+                std::string_view what, const fs::path& library) {
+  for (const std::string& name : asked) {
+    if (there.contains(name)) continue;
+    throw Error(
+        ErrorCode::kNotFound,
+        fmt::format("has no take of {} '{}'; there are: {}", what, name, fmt::join(there, ", ")),
+        {.file = library});
+  }
+}
+
+std::vector<const StoredTake*> Choose(const std::vector<StoredTake>& takes,
+                                      const TakeFilter& filter, const fs::path& library) {
+  std::vector<const StoredTake*> chosen;
+  for (const StoredTake& take : takes) {
+    if (filter.Accepts(take)) chosen.push_back(&take);
+  }
+  if (chosen.empty()) {
+    throw Error(ErrorCode::kNotFound, "has no take of these actors and classes", {.file = library});
+  }
+  return chosen;
+}
+
+const StoredFeatures* FindFeatures(const StoredTake& take, std::uint64_t feature_set_hash,
+                                   double rate_hz) {
+  const auto found = std::ranges::find_if(take.features, [&](const StoredFeatures& features) {
+    return features.feature_set_hash == feature_set_hash && features.rate_hz == rate_hz;
+  });
+  return found == take.features.end() ? nullptr : &*found;
+}
+
+// One word for all of them is clearer than the same of each take.
+void CheckAnyHas(std::span<const StoredTake* const> takes, const FeatureSet& features,
+                 double rate_hz, bool with_poses, const fs::path& library) {
+  const StoredFeatures* some = nullptr;
+  for (const StoredTake* take : takes) {
+    const StoredFeatures* found = FindFeatures(*take, features.hash, rate_hz);
+    if (found == nullptr) continue;
+    if (!with_poses || found->has_poses) return;
+    some = found;
+  }
+  throw Error(ErrorCode::kNotFound,
+              some != nullptr
+                  ? "holds no poses, which are asked for here; import the files again with --poses"
+                  : fmt::format("holds no features of the set '{}' at {:g} Hz; import the files "
+                                "again with --feature-set and --rate",
+                                features.name, rate_hz),
+              {.file = library});
+}
+
+std::variant<SegmentFile, Error> OpenSegment(const fs::path& path) {
+  try {
+    return SegmentFile(path);
+  } catch (const Error& error) {
+    return error;
+  }
+}
+
+[[noreturn]] void ThrowDamaged(const Error& error) {
+  throw Error(error.code(), fmt::format("{}; {}", error.message(), kRemedy), error.place());
+}
+
+}  // namespace
+
+bool TakeFilter::Accepts(const StoredTake& take) const {
+  return Contains(actors, take.name.actor) && Contains(classes, take.name.class_name);
+}
+
+TakeLibrary::TakeLibrary(const fs::path& folder) : folder_(folder) {
+  internal::CheckIsLibrary(folder);
+  const Catalogue catalogue(folder, SqliteDatabase::Access::kRead);
+  // As long as it lasts nobody can make a removal of takes final, and so remove their segments.
+  const SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kRead);
+  takes_ = catalogue.Takes();
+  feature_sets_ = catalogue.FeatureSets();
+  segment_bytes_ = catalogue.SegmentBytes();
+  for (const std::int64_t segment : catalogue.Segments()) {
+    segments_.emplace(segment, OpenSegment(internal::SegmentPath(folder, segment)));
+  }
+}
+
+std::vector<std::int64_t> TakeLibrary::segments() const {
+  std::vector<std::int64_t> numbers;
+  numbers.reserve(segments_.size());
+  for (const auto& [number, segment] : segments_) numbers.push_back(number);
+  return numbers;
+}
+
+void TakeLibrary::CheckFilter(const TakeFilter& filter) const {
+  std::set<std::string> actors;
+  std::set<std::string> classes;
+  for (const StoredTake& take : takes_) {
+    if (!take.name.actor.empty()) actors.insert(take.name.actor);
+    if (!take.name.class_name.empty()) classes.insert(take.name.class_name);
+  }
+  CheckNames(filter.actors, actors, "actor", folder_);
+  CheckNames(filter.classes, classes, "class", folder_);
+}
+
+TakeLibrary::Location TakeLibrary::Find(const StoredTake& take, std::uint64_t feature_set_hash,
+                                        double rate_hz) const {
+  const StoredFeatures* features = FindFeatures(take, feature_set_hash, rate_hz);
+  if (features == nullptr) {
+    throw Error(
+        ErrorCode::kNotFound,
+        fmt::format("was not imported with this feature set at {:g} Hz; import it again", rate_hz),
+        {.file = take.path});
+  }
+  const fs::path path = internal::SegmentPath(folder_, features->segment);
+  const auto found = segments_.find(features->segment);
+  if (found == segments_.end()) {
+    ThrowDamaged({ErrorCode::kNotFound, "is missing in the catalogue", {.file = path}});
+  }
+  if (const auto* error = std::get_if<Error>(&found->second)) ThrowDamaged(*error);
+  const SegmentReader& segment = std::get<SegmentFile>(found->second).reader();
+  const bool fits = features->slot >= 0 && features->slot < segment.take_count() &&
+                    segment.Content(features->slot) == take.content &&
+                    segment.feature_set_hash() == feature_set_hash && segment.rate_hz() == rate_hz;
+  if (!fits) {
+    ThrowDamaged({ErrorCode::kMalformedFile,
+                  fmt::format("does not hold {} as the catalogue says", take.path.string()),
+                  {.file = path}});
+  }
+  return {&segment, features->slot};
+}
+
+std::span<const std::uint64_t> TakeLibrary::Columns(const StoredTake& take,
+                                                    std::uint64_t feature_set_hash,
+                                                    double rate_hz) const {
+  const Location location = Find(take, feature_set_hash, rate_hz);
+  try {
+    return location.segment->Columns(location.slot);
+  } catch (const Error& error) {
+    ThrowDamaged(error);
+  }
+}
+
+JointTrajectories TakeLibrary::Poses(const StoredTake& take, std::uint64_t feature_set_hash,
+                                     double rate_hz) const {
+  const Location location = Find(take, feature_set_hash, rate_hz);
+  if (!location.segment->HasPoses(location.slot)) {
+    throw Error(ErrorCode::kNotFound, "was imported without poses; import it again with --poses",
+                {.file = take.path});
+  }
+  try {
+    return UnpackPoses(location.segment->Poses(location.slot), rate_hz);
+  } catch (const Error& error) {
+    ThrowDamaged(error);
+  }
+}
+
+void TakeLibrary::Check(const StoredTake& take) const {
+  for (const StoredFeatures& features : take.features) {
+    (void)Columns(take, features.feature_set_hash, features.rate_hz);
+    if (features.has_poses) (void)Poses(take, features.feature_set_hash, features.rate_hz);
+  }
+}
+
+TakeFeatures TakeLibrary::LoadTake(const StoredTake& take, const FeatureSet& features,
+                                   double rate_hz, bool with_poses) const {
+  const std::span<const std::uint64_t> columns = Columns(take, features.hash, rate_hz);
+  TakeFeatures loaded{.path = take.path,
+                      .stretch = {.file = take.path},
+                      .name = take.name,
+                      .rate_hz = take.rate_hz,
+                      .frame_count = take.frame_count,
+                      .features = {.rate_hz = rate_hz,
+                                   .feature_count = features.feature_count(),
+                                   .columns = {columns.begin(), columns.end()}}};
+  if (with_poses) loaded.poses = ExtractPoses(Poses(take, features.hash, rate_hz), rate_hz);
+  return loaded;
+}
+
+TakeBatch TakeLibrary::Load(const FeatureSet& features, double rate_hz, const TakeFilter& filter,
+                            bool with_poses) const {
+  if (takes_.empty()) {
+    throw Error(ErrorCode::kNotFound, "holds no takes; kinebase import adds some",
+                {.file = folder_});
+  }
+  CheckFilter(filter);
+  const std::vector<const StoredTake*> chosen = Choose(takes_, filter, folder_);
+  CheckAnyHas(chosen, features, rate_hz, with_poses, folder_);
+  TakeBatch batch;
+  for (const StoredTake* take : chosen) {
+    try {
+      batch.takes.push_back(LoadTake(*take, features, rate_hz, with_poses));
+    } catch (const Error& error) {
+      batch.failures.push_back({take->path, error});
+    }
+  }
+  return batch;
+}
+
+}  // namespace kinebase
