@@ -281,6 +281,30 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   return data.failures.empty() ? kDone : kPartFailed;
 }
 
+// protocol, methods  Which a preset decides itself.
+void AddPresetOptions(CLI::App& command, EvaluateCommandOptions& options, CLI::Option* protocol,
+                      CLI::Option* methods) {
+  const auto presets = PaperPresetNames();
+  CLI::Option* preset = command.add_option(
+      "--preset", options.preset,
+      "Instead: table1 to table5, figure7 or figure8 of the motion template paper, its figures "
+      "beside ours");
+  preset->check(OneOf(std::vector<std::string>(presets.begin(), presets.end())))
+      ->excludes(protocol)
+      ->excludes(methods)
+      ->type_name("NAME");
+  command
+      .add_option("--paper-classes", options.paper_classes,
+                  "What the paper's classes are called in the list: CSV with columns class, hdm05")
+      ->needs(preset)
+      ->type_name("FILE");
+  command
+      .add_option("--picture", options.picture, "Draw figure7 or figure8 into this .svg or .png")
+      ->needs(preset)
+      ->check(PictureFile())
+      ->type_name("FILE");
+}
+
 }  // namespace
 
 void AddEvaluateCommand(CLI::App& program, int& exit_code) {
@@ -321,25 +345,7 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
   CLI::Option* methods =
       command->add_option("--methods", options->methods, "Methods, side by side");
   methods->delimiter(',')->check(OneOf(names))->type_name("NAMES");
-  const auto presets = PaperPresetNames();
-  CLI::Option* preset = command->add_option(
-      "--preset", options->preset,
-      "Instead: table1 to table5, figure7 or figure8 of the motion template paper, its figures "
-      "beside ours");
-  preset->check(OneOf(std::vector<std::string>(presets.begin(), presets.end())))
-      ->excludes(protocol)
-      ->excludes(methods)
-      ->type_name("NAME");
-  command
-      ->add_option("--paper-classes", options->paper_classes,
-                   "What the paper's classes are called in the list: CSV with columns class, hdm05")
-      ->needs(preset)
-      ->type_name("FILE");
-  command
-      ->add_option("--picture", options->picture, "Draw figure7 or figure8 into this .svg or .png")
-      ->needs(preset)
-      ->check(PictureFile())
-      ->type_name("FILE");
+  AddPresetOptions(*command, *options, protocol, methods);
   command->add_option("--format", options->format, "Tables for people, or for a document")
       ->check(OneOf({"text", "markdown"}))
       ->capture_default_str()
