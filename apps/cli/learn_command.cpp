@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -32,7 +33,7 @@ struct LearnCommandOptions {
   std::vector<std::string> actors;
   std::vector<std::filesystem::path> folders;
   int max_rounds = 10;
-  std::string method = "mt";
+  std::string method;  // As asked for.
   bool all_classes = false;
   bool styles = false;
   std::vector<std::filesystem::path> background;
@@ -44,6 +45,10 @@ struct LearnCommandOptions {
   }
   [[nodiscard]] Profile Matching() const {
     return ParseProfile(matching).value_or(features.ParsedProfile());
+  }
+  [[nodiscard]] std::string Method() const {
+    if (!method.empty()) return method;
+    return all_classes || styles || !background.empty() ? "mt+" : "mt";
   }
 };
 
@@ -64,18 +69,18 @@ void CheckUsage(const LearnCommandOptions& options) {
   if (!options.list.empty() && options.class_name.empty() != options.all_classes) {
     throw UsageError("--list needs either --class NAME or --all-classes");
   }
-  if (options.styles && options.method == "mt") {
+  if (options.styles && options.Method() == "mt") {
     throw UsageError("--styles is for --method mt+");
   }
   if (options.all_classes) {
     if (options.output.empty()) throw UsageError("--all-classes needs a folder: -o FOLDER");
-    if (options.method == "mt") throw UsageError("--all-classes is for --method mt+");
+    if (options.Method() == "mt") throw UsageError("--all-classes is for --method mt+");
     return;
   }
-  if (options.method == "mt" && !options.background.empty()) {
+  if (options.Method() == "mt" && !options.background.empty()) {
     throw UsageError("--background is for --method mt+");
   }
-  if (options.method == "mt+" && options.list.empty() && options.background.empty()) {
+  if (options.Method() == "mt+" && options.list.empty() && options.background.empty()) {
     throw UsageError(
         "--method mt+ needs other motion to set the class off from: --background PATH, or the "
         "other classes of a --list");
@@ -163,6 +168,27 @@ struct Examples {
   TakeBatch background;
 };
 
+// Recordings of other motion, without those that clips are from: a class is no other motion.
+std::vector<TakeStretch> BackgroundFiles(const LearnCommandOptions& options,
+                                         const LabelledBatch& labelled) {
+  const auto place_of = [](const std::filesystem::path& file) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(file, ignored);
+  };
+  std::set<std::filesystem::path> learned_from;
+  for (const LabelledClip& clip : labelled.clips) learned_from.insert(place_of(clip.take.path));
+  std::vector<TakeStretch> files;
+  for (auto& file : FindMotionFiles(options.background)) {
+    if (!learned_from.contains(place_of(file))) files.push_back({.file = std::move(file)});
+  }
+  if (files.empty()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "--background holds nothing but what clips are from; name recordings of other "
+                "motion");
+  }
+  return files;
+}
+
 Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& features) {
   const ProgressCallback progress = MakeProgress(options.common);
   const auto load = [&](const std::vector<TakeStretch>& stretches) {
@@ -182,11 +208,7 @@ Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& feat
                                           options.common.load, options.common.threads, progress);
   }
   if (options.background.empty()) return examples;
-  std::vector<TakeStretch> stretches;
-  for (auto& file : FindMotionFiles(options.background)) {
-    stretches.push_back({.file = std::move(file)});
-  }
-  examples.background = load(stretches);
+  examples.background = load(BackgroundFiles(options, examples.labelled));
   return examples;
 }
 
@@ -311,7 +333,7 @@ int Run(LearnCommandOptions& options) {
                       .output = options.output,
                       .max_rounds = options.max_rounds});
   }
-  if (options.method == "mt+") return RunWithContrast(options);
+  if (options.Method() == "mt+") return RunWithContrast(options);
   if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
   CheckWritable(options.output, options.common.overwrite());
   const FeatureSet features = options.features.Load();
@@ -410,9 +432,9 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
   AddRateOption(*command, options->features.rate_hz);
   command
       ->add_option("--method", options->method,
-                   "mt, as in the paper; mt+, also what sets the class off from other motion")
+                   "mt, as in the paper; mt+, also what sets the class off from other motion: the "
+                   "default where --background or --all-classes gives some")
       ->check(OneOf({"mt", "mt+"}))
-      ->capture_default_str()
       ->type_name("mt|mt+");
   command
       ->add_option("--background", options->background,

@@ -293,7 +293,7 @@ void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates) {
     if (of_class == evidence.end()) continue;
     const std::optional<CostRange> range = UsualCosts(of_class->second);
     if (!range) continue;
-    each.tau = std::midpoint(range->right, range->wrong);
+    each.tau = internal::ThresholdBetween(range->right, range->wrong);
     each.tau_origin = "half way from right to wrong hits in the training clips";
     each.calibration =
         internal::CalibrationAt(*each.tau, internal::kSteepness / (range->wrong - range->right));

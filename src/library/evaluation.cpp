@@ -137,7 +137,6 @@ void ForEachMeasure(Scores& a, const Scores& b, const F& f) {
   f(a.recall_in_10, b.recall_in_10);
   f(a.recall_in_20, b.recall_in_20);
   f(a.classified, b.classified);
-  f(a.separation, b.separation);
   f(a.at_own.tau, b.at_own.tau);
   f(a.at_own.precision, b.at_own.precision);
   f(a.at_own.recall, b.at_own.recall);
@@ -152,18 +151,26 @@ void ForEachMeasure(Scores& a, const Scores& b, const F& f) {
 
 Scores MeanOf(std::span<const Scores> all) {
   Scores mean;
+  std::vector<double> separations;
   for (const Scores& scores : all) {
     ForEachMeasure(mean, scores, [&](double& sum, double value) {
       sum += value / static_cast<double>(all.size());
     });
+    if (scores.separation > 0) separations.push_back(scores.separation);
   }
+  // A single right hit that costs nothing makes a quotient infinite.
+  mean.separation = internal::Median(std::move(separations)).value_or(0);
   return mean;
 }
 
 // For each clip of the stream the class whose template or example fits best in it: the least cost,
-// or where templates are calibrated in this, the most confidence.
+// or where all are calibrated in this, the most confidence.
 std::vector<std::string> ClassifyClips(std::span<const ClassRanking> rankings, const Stream& stream,
                                        bool by_confidence) {
+  const bool is_comparable =
+      by_confidence && std::ranges::all_of(rankings, [](const ClassRanking& ranking) {
+        return ranking.calibration.has_value();
+      });
   std::vector<std::string> best(stream.takes.size());
   std::vector<double> cost(stream.takes.size(), std::numeric_limits<double>::infinity());
   for (const ClassRanking& ranking : rankings) {
@@ -171,7 +178,7 @@ std::vector<std::string> ClassifyClips(std::span<const ClassRanking> rankings, c
       const auto recording = static_cast<std::size_t>(ranked.hit.recording);
       const std::optional<Calibration>& fit = ranking.calibration;
       const double unlikely =
-          by_confidence && fit ? fit->slope * ranked.hit.cost + fit->offset : ranked.hit.cost;
+          is_comparable ? fit->slope * ranked.hit.cost + fit->offset : ranked.hit.cost;
       if (unlikely >= cost[recording]) continue;
       cost[recording] = unlikely;
       best[recording] = ranking.class_name;
@@ -288,12 +295,15 @@ class Evaluator {
     if (fold.train.empty() || fold.test.empty()) return;
     const std::vector<const LabelledClip*> train = ClipsOf(data_, fold.train);
     const Stream stream = MakeStream(data_, fold);
+    // Other motion to learn with; nothing of the actor who is left out.
+    const std::span<const RecordingStreams> library =
+        std::span(stream.recordings).subspan(fold.test.size());
     const std::vector<std::vector<MotionTemplate>> learned =
         LearnForMethods(train, features_, options_.methods,
                         {.learning = options_.profile,
                          .matching = options_.profile,
                          .with_contrast = AnyWithContrast(),
-                         .unlabelled = stream.recordings,
+                         .unlabelled = library,
                          .threads = options_.threads});
     for (std::size_t m = 0; m < options_.methods.size(); ++m) {
       const Method& method = options_.methods[m];
@@ -533,6 +543,9 @@ EvaluationData LoadEvaluationData(const EvaluationFiles& files, const FeatureSet
   LabelledBatch labelled = LoadLabelledClips(ReadClipList(files.list, files.folders), features,
                                              rate_hz, load, threads, progress, parts);
   EvaluationData data{.clips = std::move(labelled.clips), .failures = std::move(labelled.failures)};
+  if (data.clips.empty() && data.failures.empty()) {
+    throw Error(ErrorCode::kInvalidArgument, "lists no clips", {files.list});
+  }
   if (files.distractors.empty()) return data;
   std::vector<TakeStretch> stretches;
   for (fs::path& file : FindMotionFiles(files.distractors))

@@ -97,9 +97,8 @@ bool Lower(const MarkedCosts& costs, MotionTemplate& motion_template) {
   if (usual >= best) return true;
   const double tau = ThresholdBetween(usual, best);
   if (tau >= motion_template.tau.value_or(kDefaultTau)) return false;
-  MoveThreshold(
-      tau, fmt::format("a third of the way from the clips to {} wrong marks", costs.wrong.size()),
-      best - usual, motion_template);
+  MoveThreshold(tau, fmt::format("half way from the clips to {} wrong marks", costs.wrong.size()),
+                best - usual, motion_template);
   return false;
 }
 
@@ -116,9 +115,9 @@ bool SetThreshold(const MarkedCosts& costs, MotionTemplate& motion_template) {
   const Limits limits = LimitsOf(split, costs);
   const bool contradictory = split.mistakes > 0;
   MoveThreshold(limits.tau,
-                contradictory ? fmt::format("fewest mistakes among {}", CountsOf(costs))
-                              : fmt::format("a third of the way from right to wrong hits, by {}",
-                                            CountsOf(costs)),
+                contradictory
+                    ? fmt::format("fewest mistakes among {}", CountsOf(costs))
+                    : fmt::format("half way from right to wrong hits, by {}", CountsOf(costs)),
                 limits.width, motion_template);
   return contradictory;
 }

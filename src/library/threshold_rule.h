@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -9,16 +10,11 @@
 
 namespace kinebase::internal {
 
-// From right to wrong marks: a library has much more motion to go wrong in than what is known, and
-// those who mark do not reach all that costs little.
-inline constexpr double kThresholdShare = 1.0 / 3;
-// Of the confidence between them: it falls from .99 to .01 where it is ½ half way, and from .97 to
-// .001 where it is ½ after a third.
+// Of the confidence between them: it falls from .99 to .01.
 inline constexpr double kSteepness = 10;
 
-inline double ThresholdBetween(double right, double wrong) {
-  return right + kThresholdShare * (wrong - right);
-}
+// Half way from right to wrong hits.
+inline double ThresholdBetween(double right, double wrong) { return std::midpoint(right, wrong); }
 
 // ½ at τ.
 inline Calibration CalibrationAt(double tau, double slope) {

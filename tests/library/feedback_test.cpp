@@ -102,7 +102,7 @@ TEST(UpdateTemplate, PutsTheThresholdBetweenRightAndWrongMarks) {
   const double right = CostIn(before, kClips[0]);
   const double wrong = CostIn(before, kWrongTake);
   ASSERT_LT(right, wrong);
-  EXPECT_NEAR(update.updated.tau.value(), right + (wrong - right) / 3, 1e-12);
+  EXPECT_NEAR(update.updated.tau.value(), (right + wrong) / 2, 1e-12);
   EXPECT_THAT(update.updated.tau_origin, HasSubstr("1 right and 1 wrong marks"));
   EXPECT_FALSE(update.contradictory);
 }

@@ -130,7 +130,7 @@ struct Scores {
   double classified = 0;  // Share of clips that their own class's template or example fits best.
   // Median of Δ over the whole stream, in medians of what right hits among the first 10 cost
   // (Müller & Röder, SCA 2006, Sect. 5.5). Infinite if they cost nothing; 0 if none is right, or Δ
-  // is not known everywhere (keyframes, fuzzy).
+  // is not known everywhere (keyframes, fuzzy). Of several rankings the median of what is known.
   double separation = 0;
   std::vector<TauScores> at;  // At each τ asked for,
   TauScores at_own;           // and at the class's own, chosen from training clips only.

@@ -90,7 +90,7 @@ struct UpdateOptions {
 
 // Right hits that the template was not learned from become clips, wrong ones stop being clips, and
 // the matrix is learned again if anything changed. With a contrast wrong hits are counterexamples.
-// The threshold lies a third of the way from right to wrong marks under the new template, but never
+// The threshold lies half way from right to wrong marks under the new template, but never
 // leaves out a right mark that is cheaper than every wrong one; where right marks alone are known
 // it only rises, where wrong ones alone are it only falls. A confidence is ½ there.
 //
