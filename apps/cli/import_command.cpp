@@ -97,12 +97,13 @@ int Run(const ImportCommandOptions& options) {
 
   for (const TakeFailure& failure : report.failures) PrintError(failure.error.what());
   const bool is_any_in = report.added + report.updated + report.unchanged > 0;
-  if (!report.failures.empty() && !is_any_in) return kCouldNot;
-  if (options.common.json) {
+  const bool is_nothing_done = !report.failures.empty() && !is_any_in;
+  if (options.common.json) {  // The last line in any case, for whoever reads along.
     PrintJsonLine(ToJson(report, watch.seconds()));
-  } else {
+  } else if (!is_nothing_done) {
     Print(Summary(report, watch.seconds()));
   }
+  if (is_nothing_done) return kCouldNot;
   return report.failures.empty() ? kDone : kPartFailed;
 }
 

@@ -1,6 +1,7 @@
 // kinebase library: what is in a library on disk, whether it is sound, taking takes out of it.
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "cli/commands.h"
@@ -95,12 +96,21 @@ int List(const LibraryOptions& options) {
   return kDone;
 }
 
+// A line for what is wrong, with the take, or how many there are, that it costs.
+void PrintDamage(const std::vector<TakeFailure>& damaged) {
+  std::map<std::string, std::vector<const TakeFailure*>> takes;  // By what is wrong.
+  for (const TakeFailure& failure : damaged) takes[failure.error.what()].push_back(&failure);
+  for (const auto& [what, failures] : takes) {
+    PrintError(failures.size() == 1 ? fmt::format("{}: {}", failures.front()->path.string(), what)
+                                    : fmt::format("{} takes, such as {}: {}", failures.size(),
+                                                  failures.front()->path.string(), what));
+  }
+}
+
 int Verify(const LibraryOptions& options) {
   const VerifyReport report =
       VerifyLibrary(options.library, options.common.threads, MakeProgress(options.common));
-  for (const TakeFailure& damaged : report.damaged) {
-    PrintError(fmt::format("{}: {}", damaged.path.string(), damaged.error.what()));
-  }
+  PrintDamage(report.damaged);
   if (!report.damaged.empty() && std::ssize(report.damaged) == report.takes) return kCouldNot;
   if (options.common.json) {
     Json json = {{"takes", report.takes},

@@ -472,6 +472,10 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   AddThreadsOption(*command, options->common);
   AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);
+  for (const char* reading : {"--skeleton", "--source-rate", "--strict", "--asf-length",
+                              "--source-up", "--source-units", "--names", "--marker-set"}) {
+    library->excludes(command->get_option(reading));  // Its files have been read.
+  }
   command->footer(
       "Examples:\n"
       "  kinebase search squat.template.json --in recordings/ --tau 0.04\n"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <unordered_map>
 
@@ -48,11 +50,43 @@ ContentKey ParseKey(std::string_view text) {
   return key;
 }
 
+// Searching counts with both: places in a take are computed from them.
+void CheckTake(const StoredTake& take, const fs::path& catalogue) {
+  const bool has_rate = std::isfinite(take.rate_hz) && take.rate_hz > 0;
+  const bool has_frames =
+      take.frame_count >= 1 && take.frame_count <= std::numeric_limits<std::int32_t>::max();
+  if (has_rate && has_frames) return;
+  throw Error(
+      ErrorCode::kMalformedFile,
+      fmt::format("says that {} has {} frames at {:g} Hz; restore it from a copy, or import "
+                  "the files into a new library",
+                  take.path.string(), take.frame_count, take.rate_hz),
+      {.file = catalogue});
+}
+
 }  // namespace
+
+void CheckHasNoLostSegments(const fs::path& library) {
+  fs::path some;
+  std::int64_t count = 0;
+  std::error_code unreachable;
+  for (const auto& entry : fs::directory_iterator(SegmentFolder(library), unreachable)) {
+    if (entry.path().extension() != ".segment") continue;
+    some = entry.path().filename();
+    ++count;
+  }
+  if (count == 0) return;
+  throw Error(ErrorCode::kMalformedFile,
+              fmt::format("is missing or empty, but 'segments' beside it holds {} such as {}; "
+                          "restore it from a copy, or name a new folder for the library",
+                          count == 1 ? "a file" : fmt::format("{} files", count), some.string()),
+              {.file = CatalogueFile(library)});
+}
 
 void CheckIsLibrary(const fs::path& library) {
   std::error_code unreachable;
   if (fs::exists(CatalogueFile(library), unreachable)) return;
+  CheckHasNoLostSegments(library);
   throw Error(ErrorCode::kNotFound,
               fs::exists(library, unreachable)
                   ? "is no library; kinebase import makes one in a new or empty folder"
@@ -78,6 +112,7 @@ Catalogue::Catalogue(const fs::path& library, SqliteDatabase::Access access)
                             version, kVersion),
                 {.file = CatalogueFile(library)});
   }
+  if (is_empty_) CheckHasNoLostSegments(library);
   if (access == SqliteDatabase::Access::kCreate && is_empty_) PrepareSchema();
 }
 
@@ -104,6 +139,7 @@ std::vector<StoredTake> Catalogue::Takes() const {
                      .name = {rows.Text(4), rows.Text(5), rows.Text(6)},
                      .rate_hz = rows.Real(7),
                      .frame_count = rows.Integer(8)});
+    CheckTake(takes.back(), database_.file());
   }
   SqliteStatement features(database_,
                            "SELECT take, feature_set, rate_hz, segment, slot, poses FROM features "
@@ -151,7 +187,16 @@ std::int64_t Catalogue::SegmentBytes() const {
 }
 
 std::int64_t Catalogue::NextSegment() const {
-  return database_.Number("SELECT seq FROM sqlite_sequence WHERE name = 'segments'") + 1;
+  const std::int64_t last =
+      database_.Number("SELECT seq FROM sqlite_sequence WHERE name = 'segments'");
+  if (last < 0 || last == std::numeric_limits<std::int64_t>::max()) {
+    throw Error(ErrorCode::kMalformedFile,
+                fmt::format("cannot number a segment after {}; restore it from a copy, or import "
+                            "the files into a new library",
+                            last),
+                {.file = database_.file()});
+  }
+  return last + 1;
 }
 
 void Catalogue::AddFeatureSet(const FeatureSet& features) {

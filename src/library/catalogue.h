@@ -22,19 +22,25 @@
 
 namespace kinebase::internal {
 
-// Errors  NotFound if the folder has none.
+// For a folder whose catalogue is missing or empty: what a library holds is written after its
+// catalogue, so segments there are all that is left of one, or somebody else's.
+// Errors  MalformedFile if there are any, saying what to do.
+void CheckHasNoLostSegments(const std::filesystem::path& library);
+
+// Errors  NotFound if the folder has none; those of CheckHasNoLostSegments.
 void CheckIsLibrary(const std::filesystem::path& library);
 
 class Catalogue {
  public:
   // kCreate makes what is missing, and is for whoever holds the lock.
   // Errors  Of all members: those of SqliteDatabase. Here also Mismatch for a newer version, and
-  //         for a database of another program.
+  //         for a database of another program; those of CheckHasNoLostSegments.
   Catalogue(const std::filesystem::path& library, SqliteDatabase::Access access);
 
   [[nodiscard]] const SqliteDatabase& database() const { return database_; }
 
   // Inside of one transaction, where several answers are to fit together.
+  // Errors  Also MalformedFile for a take without frames or a rate, and where numbers run out.
   [[nodiscard]] std::vector<StoredTake> Takes() const;  // By path.
   [[nodiscard]] std::vector<StoredFeatureSet> FeatureSets() const;
   [[nodiscard]] std::vector<std::int64_t> Segments() const;

@@ -10,6 +10,7 @@
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
 #include "library/catalogue.h"
+#include "library/damage.h"
 #include "library/library_layout.h"
 #include "library/library_lock.h"
 
@@ -31,11 +32,13 @@ void CheckCatalogue(const fs::path& library, const Catalogue& catalogue) {
               {.file = internal::CatalogueFile(library)});
 }
 
+// Errors  Of a take of which nobody can tell: see damage.h.
 bool IsDamaged(const TakeLibrary& library, const StoredTake& take) {
   try {
     library.Check(take);
     return false;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (!internal::IsDamage(error)) throw;
     return true;
   }
 }

@@ -8,8 +8,9 @@
 namespace kinebase::internal {
 namespace {
 
-// Longer than any transaction of ours: those that read, or make takes visible, last milliseconds.
-constexpr int kPatienceMs = 20000;
+// What reading and making takes visible lasts is milliseconds, but nothing holds a reader to that:
+// a program may be stopped in the middle, other programs take their time.
+constexpr int kCommitAttempts = 6;
 
 constexpr int kKindOfResult = 0xFF;  // Of an extended result code.
 
@@ -37,14 +38,16 @@ Error ToError(int result, const char* message, const std::filesystem::path& file
 
 void SqliteDatabase::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
 
-SqliteDatabase::SqliteDatabase(const std::filesystem::path& file, Access access) : file_(file) {
+SqliteDatabase::SqliteDatabase(const std::filesystem::path& file, Access access,
+                               std::chrono::milliseconds patience)
+    : file_(file) {
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
                     (access == Access::kCreate ? SQLITE_OPEN_CREATE : 0);
   sqlite3* handle = nullptr;
   const int result = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);  // There is one even where opening failed.
   if (result != SQLITE_OK) ThrowError(result);
-  sqlite3_busy_timeout(handle, kPatienceMs);
+  sqlite3_busy_timeout(handle, static_cast<int>(patience.count()));
 }
 
 void SqliteDatabase::ThrowError(int result) const {
@@ -135,7 +138,12 @@ SqliteTransaction::~SqliteTransaction() {
 }
 
 void SqliteTransaction::Commit() {
-  database_.Execute("COMMIT");
+  int result = SQLITE_BUSY;
+  // A transaction that readers keep from its end is still open, and can be ended later.
+  for (int i = 0; i < kCommitAttempts && (result & kKindOfResult) == SQLITE_BUSY; ++i) {
+    result = sqlite3_exec(database_.handle(), "COMMIT", nullptr, nullptr, nullptr);
+  }
+  if (result != SQLITE_OK) database_.ThrowError(result);
   is_open_ = false;
 }
 

@@ -1,6 +1,7 @@
 // SQLite with errors of ours: a database, its statements, a transaction. Internal.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -20,12 +21,17 @@ class SqliteDatabase {
  public:
   enum class Access { kRead, kCreate };
 
+  static constexpr std::chrono::milliseconds kPatience = std::chrono::seconds(20);
+
   // A reader, too, may write: it takes back what a program that was killed left half done.
-  SqliteDatabase(const std::filesystem::path& file, Access access);
+  // patience  How long a statement waits for others.
+  SqliteDatabase(const std::filesystem::path& file, Access access,
+                 std::chrono::milliseconds patience = kPatience);
 
   void Execute(const char* sql) const;
   [[nodiscard]] std::int64_t Number(const char* sql) const;  // The one number of a query.
 
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
   [[noreturn]] void ThrowError(int result) const;
 
@@ -74,6 +80,7 @@ class SqliteTransaction {
   SqliteTransaction(const SqliteTransaction&) = delete;
   SqliteTransaction& operator=(const SqliteTransaction&) = delete;
 
+  // Waits six times as long as other statements: what leads to here was much work.
   void Commit();
 
  private:

@@ -29,10 +29,24 @@ using internal::Catalogue;
 using internal::SqliteDatabase;
 using internal::SqliteTransaction;
 
-// Options that change what is read from the same bytes.
-std::string TextOf(const LoadOptions& options) {
+// To be raised whenever a reader comes to understand the same bytes otherwise: libraries then read
+// their files anew.
+constexpr int kReadersVersion = 1;
+
+// The rate that reading may take from outside of the file: what is asked for, else its name's. A
+// name may also stand before a second ending: "take_120.amc.mat".
+std::string OutsideRateOf(const fs::path& file, const LoadOptions& options) {
+  if (options.source_rate_hz != 0) return ToShortestText(options.source_rate_hz);
+  return ToShortestText(ParseTakeName(file).rate_hz) + " by name, or " +
+         ToShortestText(ParseTakeName(file.stem()).rate_hz);
+}
+
+// What changes how the same bytes are read.
+std::string WayOfReading(const fs::path& file, const LoadOptions& options) {
   const std::string up = options.up_axis ? std::to_string(static_cast<int>(*options.up_axis)) : "";
-  return fmt::format("{} {} {} {} {}", ToShortestText(options.source_rate_hz), options.strict,
+  const MotionFormat* format = FindMotionFormat(file);
+  return fmt::format("{} {} {} {} {} {} {}", kReadersVersion, format ? format->name : "",
+                     OutsideRateOf(file, options), options.strict,
                      static_cast<int>(options.length_reading), up, options.units);
 }
 
@@ -59,7 +73,8 @@ ContentKey KeyOf(const fs::path& file, const LoadOptions& options) {
   const auto skeleton = map(SkeletonOf(file, options));
   const auto names = map(options.marker_names);
   const auto set = map(options.marker_set);
-  return internal::KeyOf({motion.text(), text(skeleton), text(names), text(set), TextOf(options)});
+  return internal::KeyOf(
+      {motion.text(), text(skeleton), text(names), text(set), WayOfReading(file, options)});
 }
 
 fs::path Resolved(const fs::path& file) {
@@ -89,6 +104,8 @@ std::vector<ImportSource> WithoutRepeats(std::span<const ImportSource> sources) 
 struct Arrival {
   StoredTake take;
   ImportState state = ImportState::kAdded;
+  bool is_to_be_read = false;
+  std::optional<std::size_t> same_as;   // Take of the batch that has the same contents to store.
   std::optional<SegmentTake> contents;  // To be stored; empty if the library has it already.
   Diagnostics diagnostics;
   std::optional<Error> error;
@@ -138,29 +155,46 @@ class Importer {
   std::vector<Arrival> Read(std::span<const ImportSource> batch, std::size_t begin,
                             std::size_t total) const {
     std::vector<Arrival> arrivals(batch.size());
-    ProgressCallback progress;
-    if (options_.progress) {
-      progress = [&](std::string_view what, std::size_t done, std::size_t) {
-        return options_.progress(what, begin + done, total);
-      };
-    }
-    ParallelFor(batch.size(), options_.threads, "importing", progress, [&](std::size_t i) {
-      Arrival& arrival = arrivals[i];
-      try {
-        Read(batch[i], arrival);
-      } catch (const Error& error) {
-        arrival.error = error.place().file.empty()
-                            ? Error(error.code(), error.message(), {.file = batch[i].file})
-                            : error;
-      } catch (const std::bad_alloc&) {
-        arrival.error = Error(ErrorCode::kIoFailure, "needs more memory than there is",
-                              {.file = batch[i].file});
-      }
-    });
+    // Recognising is quick where there is something to read; it is heard of, for it can be
+    // cancelled, and does not count.
+    ParallelFor(batch.size(), options_.threads, "importing", Progress(begin, 0, total),
+                [&](std::size_t i) {
+                  Try(batch[i], arrivals[i], [&] { Recognise(batch[i], arrivals[i]); });
+                });
+    const std::vector<std::vector<std::size_t>> groups = GroupByContents(arrivals);
+    const std::size_t repeated = batch.size() - groups.size();
+    ParallelFor(groups.size(), options_.threads, "importing",
+                Progress(begin + repeated, batch.size(), total),
+                [&](std::size_t group) { ReadGroup(batch, groups[group], arrivals); });
     return arrivals;
   }
 
-  void Read(const ImportSource& source, Arrival& arrival) const {
+  // Of a part of the work, at most `most` takes, that comes after `before` takes of `total`.
+  [[nodiscard]] ProgressCallback Progress(std::size_t before, std::size_t most,
+                                          std::size_t total) const {
+    if (!options_.progress) return {};
+    return [this, before, most, total](std::string_view what, std::size_t done, std::size_t) {
+      return options_.progress(what, before + std::min(done, most), total);
+    };
+  }
+
+  // What goes wrong with one file is said of it, and stops no other.
+  template <typename Action>
+  static void Try(const ImportSource& source, Arrival& arrival, const Action& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      arrival.error = error.place().file.empty()
+                          ? Error(error.code(), error.message(), {.file = source.file})
+                          : error;
+    } catch (const std::bad_alloc&) {
+      arrival.error =
+          Error(ErrorCode::kIoFailure, "needs more memory than there is", {.file = source.file});
+    }
+  }
+
+  // Which take a file is, and whether it has to be read.
+  void Recognise(const ImportSource& source, Arrival& arrival) const {
     const ContentKey content = KeyOf(source.file, options_.load);
     const fs::path path = Resolved(source.file);
     const auto known = known_.find(path.native());
@@ -180,7 +214,37 @@ class Importer {
     }
     if (!has_same_content) take.features.clear();
     take.content = content;
-    ReadContents(source, arrival);
+    arrival.is_to_be_read = true;
+  }
+
+  // Places of takes that are read from the same bytes; one that is not read is by itself.
+  static std::vector<std::vector<std::size_t>> GroupByContents(std::span<const Arrival> arrivals) {
+    std::vector<std::vector<std::size_t>> groups;
+    std::map<ContentKey, std::size_t> places;
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+      if (arrivals[i].is_to_be_read) {
+        const auto [place, is_new] = places.try_emplace(arrivals[i].take.content, groups.size());
+        if (!is_new) {
+          groups[place->second].push_back(i);
+          continue;
+        }
+      }
+      groups.push_back({i});
+    }
+    return groups;
+  }
+
+  // Features are computed for the first that can be read; the others only have other names.
+  void ReadGroup(std::span<const ImportSource> batch, std::span<const std::size_t> group,
+                 std::span<Arrival> arrivals) const {
+    std::optional<std::size_t> first;
+    for (const std::size_t i : group) {
+      Arrival& arrival = arrivals[i];
+      if (!arrival.is_to_be_read) continue;
+      arrival.same_as = first;
+      Try(batch[i], arrival, [&] { ReadContents(batch[i], arrival); });
+      if (!arrival.error && arrival.contents) first = i;
+    }
   }
 
   // What a list says of a take; whether that is anything new. A list that says nothing, and no
@@ -209,9 +273,10 @@ class Importer {
     take.frame_count = recording.frame_count();
     arrival.diagnostics = std::move(recording.diagnostics);
     std::erase_if(take.features, [&](const StoredFeatures& each) { return IsSameSet(each); });
+    if (arrival.same_as) return;
     const auto stored = stored_.find(take.content);
-    if (stored != stored_.end()) {  // The same bytes under another name.
-      take.features.push_back(stored->second);
+    if (stored != stored_.end() && IsIntact(stored->second, take.content)) {
+      take.features.push_back(stored->second);  // The same bytes under another name.
       return;
     }
     const JointTrajectories joints = StandardJoints(recording, arrival.diagnostics);
@@ -220,6 +285,24 @@ class Importer {
     contents.features = ExtractFeatures(joints, options_.features, options_.rate_hz);
     if (options_.with_poses) {
       contents.poses = PackPoses(ResampleTrajectories(joints, options_.rate_hz));
+    }
+  }
+
+  // Whether what is stored can still be read: a new take is not to share another's damage.
+  [[nodiscard]] bool IsIntact(const StoredFeatures& features, const ContentKey& content) const {
+    try {
+      const SegmentFile file(internal::SegmentPath(library_, features.segment));
+      const SegmentReader& segment = file.reader();
+      const bool fits = features.slot >= 0 && features.slot < segment.take_count() &&
+                        segment.Content(features.slot) == content &&
+                        segment.feature_set_hash() == features.feature_set_hash &&
+                        segment.rate_hz() == features.rate_hz;
+      if (!fits) return false;
+      (void)segment.Columns(features.slot);
+      if (features.has_poses) (void)segment.Poses(features.slot);
+      return true;
+    } catch (const Error&) {
+      return false;
     }
   }
 
@@ -233,6 +316,9 @@ class Importer {
     for (Arrival& arrival : arrivals) {
       if (arrival.error || arrival.state == ImportState::kUnchanged) continue;
       is_news = true;
+      if (arrival.same_as) {  // An earlier one, which has been stored.
+        arrival.take.features.push_back(arrivals[*arrival.same_as].take.features.back());
+      }
       if (!arrival.contents) continue;
       arrival.take.features.push_back({.feature_set_hash = options_.features.hash,
                                        .rate_hz = options_.rate_hz,
@@ -310,6 +396,20 @@ class Importer {
   ImportReport report_;
 };
 
+// Makes a folder, and those above it that are missing, so that their names last as what is written
+// into them does.
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error)) return;
+  if (folder.has_parent_path()) MakeFolder(folder.parent_path());
+  fs::create_directory(folder, error);
+  if (error) {
+    throw Error(ErrorCode::kIoFailure, fmt::format("cannot be made: {}", error.message()),
+                {.file = folder});
+  }
+  FlushFolder(folder / "..");
+}
+
 // Makes the folder of a library, or sees to it that there is nothing else in it.
 void PrepareFolder(const fs::path& library) {
   std::error_code error;
@@ -322,14 +422,13 @@ void PrepareFolder(const fs::path& library) {
                 "is a folder with other files in it; name a new or empty one for the library",
                 {.file = library});
   }
-  fs::create_directories(internal::SegmentFolder(library), error);
-  if (error) {
-    throw Error(ErrorCode::kIoFailure,
-                fmt::format("cannot be made into a library: {}", error.message()),
-                {.file = library});
+  if (!fs::exists(internal::CatalogueFile(library), error)) {
+    internal::CheckHasNoLostSegments(library);
   }
+  MakeFolder(fs::absolute(internal::SegmentFolder(library)));
+  // Again, for an import that was killed after it had made them.
   FlushFolder(library);
-  FlushFolder(fs::absolute(library / "..", error));  // The folder's own name, if it is new.
+  FlushFolder(library / "..");
 }
 
 }  // namespace
@@ -345,7 +444,7 @@ ImportReport ImportTakes(const fs::path& library, std::span<const ImportSource> 
 std::vector<ImportSource> ListedSources(const fs::path& list, std::span<const fs::path> folders,
                                         std::vector<TakeFailure>& failures) {
   std::vector<ImportSource> sources;
-  for (const ListedClip& clip : ReadClipList(list, folders)) {
+  for (const ListedClip& clip : ReadClipList(list, folders, ListedClass::kOptional)) {
     if (clip.file.empty()) {
       failures.push_back(
           {clip.name, Error(ErrorCode::kNotFound,

@@ -8,6 +8,7 @@
 #include "fmt/ranges.h"
 #include "kinebase/features/pose_stream.h"
 #include "library/catalogue.h"
+#include "library/damage.h"
 #include "library/library_layout.h"
 
 namespace kinebase {
@@ -18,8 +19,10 @@ using internal::Catalogue;
 using internal::SqliteDatabase;
 using internal::SqliteTransaction;
 
-constexpr std::string_view kRemedy =
+constexpr std::string_view kDamageRemedy =
     "run 'kinebase library remove LIBRARY --damaged' and import its files again";
+constexpr std::string_view kAccessRemedy =
+    "it may be sound: see to its permissions and its disk, and try again";
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::ranges::find(names, name) != names.end();
@@ -30,10 +33,12 @@ void CheckNames(const std::vector<std::string>& asked, const std::set<std::strin
                 std::string_view what, const fs::path& library) {
   for (const std::string& name : asked) {
     if (there.contains(name)) continue;
-    throw Error(
-        ErrorCode::kNotFound,
-        fmt::format("has no take of {} '{}'; there are: {}", what, name, fmt::join(there, ", ")),
-        {.file = library});
+    throw Error(ErrorCode::kNotFound,
+                there.empty() ? fmt::format("has no take of {0} '{1}': it knows no {0} of any take",
+                                            what, name)
+                              : fmt::format("has no take of {} '{}'; there are: {}", what, name,
+                                            fmt::join(there, ", ")),
+                {.file = library});
   }
 }
 
@@ -76,16 +81,36 @@ void CheckAnyHas(std::span<const StoredTake* const> takes, const FeatureSet& fea
               {.file = library});
 }
 
+// A segment is only missing where its folder can be looked into: what is on a disk that is not
+// there, or is kept from this user, may be sound.
+Error WithoutGuess(const Error& error, const fs::path& folder) {
+  if (error.code() != ErrorCode::kNotFound) return error;
+  std::error_code unreadable;
+  const fs::directory_iterator entries(folder, unreadable);
+  if (!unreadable) return error;
+  return {
+      ErrorCode::kIoFailure,
+      fmt::format("cannot be looked for, as its folder cannot be read: {}", unreadable.message()),
+      error.place()};
+}
+
 std::variant<SegmentFile, Error> OpenSegment(const fs::path& path) {
   try {
     return SegmentFile(path);
   } catch (const Error& error) {
-    return error;
+    return WithoutGuess(error, path.parent_path());
   }
 }
 
-[[noreturn]] void ThrowDamaged(const Error& error) {
-  throw Error(error.code(), fmt::format("{}; {}", error.message(), kRemedy), error.place());
+// With what to do: removing takes is advised for damage alone.
+[[noreturn]] void ThrowUnusable(const Error& error) {
+  std::string message = error.message();
+  if (internal::IsDamage(error)) {
+    message += fmt::format("; {}", kDamageRemedy);
+  } else if (error.code() == ErrorCode::kIoFailure) {
+    message += fmt::format("; {}", kAccessRemedy);
+  }
+  throw Error(error.code(), std::move(message), error.place());
 }
 
 }  // namespace
@@ -137,17 +162,17 @@ TakeLibrary::Location TakeLibrary::Find(const StoredTake& take, std::uint64_t fe
   const fs::path path = internal::SegmentPath(folder_, features->segment);
   const auto found = segments_.find(features->segment);
   if (found == segments_.end()) {
-    ThrowDamaged({ErrorCode::kNotFound, "is missing in the catalogue", {.file = path}});
+    ThrowUnusable({ErrorCode::kNotFound, "is missing in the catalogue", {.file = path}});
   }
-  if (const auto* error = std::get_if<Error>(&found->second)) ThrowDamaged(*error);
+  if (const auto* error = std::get_if<Error>(&found->second)) ThrowUnusable(*error);
   const SegmentReader& segment = std::get<SegmentFile>(found->second).reader();
   const bool fits = features->slot >= 0 && features->slot < segment.take_count() &&
                     segment.Content(features->slot) == take.content &&
                     segment.feature_set_hash() == feature_set_hash && segment.rate_hz() == rate_hz;
   if (!fits) {
-    ThrowDamaged({ErrorCode::kMalformedFile,
-                  fmt::format("does not hold {} as the catalogue says", take.path.string()),
-                  {.file = path}});
+    ThrowUnusable({ErrorCode::kMalformedFile,
+                   fmt::format("does not hold {} as the catalogue says", take.path.string()),
+                   {.file = path}});
   }
   return {&segment, features->slot};
 }
@@ -159,7 +184,7 @@ std::span<const std::uint64_t> TakeLibrary::Columns(const StoredTake& take,
   try {
     return location.segment->Columns(location.slot);
   } catch (const Error& error) {
-    ThrowDamaged(error);
+    ThrowUnusable(error);
   }
 }
 
@@ -173,7 +198,7 @@ JointTrajectories TakeLibrary::Poses(const StoredTake& take, std::uint64_t featu
   try {
     return UnpackPoses(location.segment->Poses(location.slot), rate_hz);
   } catch (const Error& error) {
-    ThrowDamaged(error);
+    ThrowUnusable(error);
   }
 }
 

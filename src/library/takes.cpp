@@ -229,7 +229,8 @@ TakeBatch LoadManyTakeFeatures(std::span<const TakeStretch> stretches, const Fea
   return batch;
 }
 
-std::vector<ListedClip> ParseClipList(std::string_view text, const fs::path& list) {
+std::vector<ListedClip> ParseClipList(std::string_view text, const fs::path& list,
+                                      ListedClass needs) {
   const CsvTable table = ParseCsv(text, list);
   const std::size_t file_column = table.Column("file");
   const std::size_t class_column = table.Column("class");
@@ -239,22 +240,30 @@ std::vector<ListedClip> ParseClipList(std::string_view text, const fs::path& lis
     const auto& row = table.rows[i];
     for (const std::size_t column : {file_column, class_column}) {
       if (!Trim(row[column]).empty()) continue;
-      throw Error(ErrorCode::kMalformedFile,
-                  fmt::format("a clip without a {}", table.columns[column]),
-                  {list, table.lines[i]});
+      if (column == class_column && needs == ListedClass::kOptional) continue;
+      throw Error(
+          ErrorCode::kMalformedFile,
+          fmt::format("a clip without a {}; name it, or leave the line out", table.columns[column]),
+          {list, table.lines[i]});
     }
     clips.push_back({.name = row[file_column],
-                     .class_name = row[class_column],
+                     .class_name = Trim(row[class_column]).empty() ? "" : row[class_column],
                      .actor = actor_column ? row[*actor_column] : std::string(),
                      .line = table.lines[i]});
   }
   return clips;
 }
 
-std::vector<ListedClip> ReadClipList(const fs::path& list, std::span<const fs::path> folders) {
-  std::vector<ListedClip> clips = ParseClipList(MappedFile(list).text(), list);
+std::vector<ListedClip> ReadClipList(const fs::path& list, std::span<const fs::path> folders,
+                                     ListedClass needs) {
+  std::vector<ListedClip> clips = ParseClipList(MappedFile(list).text(), list, needs);
   const FileIndex index(PlacesOf(list, folders));
   for (ListedClip& clip : clips) {
+    std::error_code unreachable;
+    if (clip.name.is_absolute() && fs::is_regular_file(clip.name, unreachable)) {
+      clip.file = clip.name;
+      continue;
+    }
     const fs::path* file = index.Find(clip.name.filename().string());
     if (file != nullptr) clip.file = *file;
   }

@@ -192,6 +192,16 @@ TEST_F(LibraryOnDisk, NamesWhatIsDamagedAndSearchesTheRest) {
   EXPECT_EQ(RunKinebase({"library", "verify", library()}).exit_code, 0);
 }
 
+TEST_F(LibraryOnDisk, NamesADamagedSegmentOnce) {
+  Import();
+  const fs::path segment = fs::path(library()) / "segments" / "00000001.segment";
+  fs::resize_file(segment, fs::file_size(segment) - 1);
+  const ProgramResult verified = RunKinebase({"library", "verify", library()});
+  EXPECT_EQ(verified.exit_code, 1);
+  EXPECT_THAT(verified.ErrorLines(),
+              ElementsAre(AllOf(HasSubstr("12 takes, such as "), HasSubstr(segment.string()))));
+}
+
 TEST_F(LibraryOnDisk, TakesClassesFromAList) {
   const ProgramResult result = RunKinebase(
       {"import", "--list", recordings_.list(), "--library", library(), "--json", "--quiet"});
@@ -209,6 +219,9 @@ TEST_F(LibraryOnDisk, GoesOnAfterABadFile) {
   EXPECT_EQ(summary["added"], 1);
   EXPECT_EQ(summary["failed"][0]["file"], bad);
   ExpectOneError(RunKinebase({"import", bad, "--library", library()}), 1, {bad});
+  const ProgramResult none = RunKinebase({"import", bad, "--library", library(), "--json"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_EQ(JsonLines(none.out).back()["failed"][0]["file"], bad);
 }
 
 TEST_F(LibraryOnDisk, SaysWhatIsWrongWithAFolder) {
@@ -223,6 +236,10 @@ TEST_F(LibraryOnDisk, SaysWhatIsWrongWithAFolder) {
                  {"--library"});
   ExpectOneError(RunKinebase({"search", "a.json", "--in", folder, "--library", library()}), 2,
                  {"--library"});
+  ExpectOneError(RunKinebase({"search", "a.json", "--library", library(), "--source-rate", "60"}),
+                 2, {"--source-rate"});
+  ExpectOneError(RunKinebase({"search", "a.json", "--library", library(), "--strict"}), 2,
+                 {"--strict"});
 }
 
 TEST(LibraryOfRealRecordings, IsSearchedLikeItsFiles) {

@@ -188,6 +188,26 @@ TEST_F(CrashingImport, WithinALimitOfFileSizesSaysSoAndLosesNothing) {
   EXPECT_GE(refused, 3);
 }
 
+// A name is in the folder above: what is made deep down lasts if all that hold new names do.
+TEST_F(CrashingImport, FlushesTheNamesOfAllFoldersThatItMakes) {
+  const fs::path flushed = recordings_.scratch() / "flushed";
+  const fs::path made = recordings_.scratch() / "n" / "a" / "b" / "lib";
+  EXPECT_EQ(RunKinebase({"import", recordings_.Squat(), "--library", made},
+                        {.environment = {{"LD_PRELOAD", KINEBASE_FAULTS},
+                                         {"ASAN_OPTIONS", kAsanOptions},
+                                         {"KINEBASE_FAULT_FLUSHED", flushed}}})
+                .exit_code,
+            0);
+  std::set<std::string> names;
+  std::istringstream lines(ReadText(flushed));
+  for (std::string line; std::getline(lines, line);) names.insert(line);
+  for (fs::path folder = fs::canonical(made) / "segments";
+       folder != fs::canonical(recordings_.scratch()).parent_path();
+       folder = folder.parent_path()) {
+    EXPECT_TRUE(names.contains(folder.string())) << folder;
+  }
+}
+
 TEST_F(CrashingImport, OfALibraryThatIsBeingMadeCanBeginAgain) {
   fs::remove_all(library());
   const int calls = CountCalls();

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "kinebase/library/library_upkeep.h"
+#include "kinebase/library/segment_file.h"
 #include "kinebase/library/take_library.h"
 #include "kinebase/motion/motion_editing.h"
 #include "library/made_up_takes.h"
@@ -144,6 +147,75 @@ TEST(Import, KeepsTheSameBytesUnderTwoNamesOnce) {
               IsEmpty());
 }
 
+TEST(Import, KeepsTheSameBytesOfOneBatchOnce) {
+  const MadeUpTakes takes(2);
+  const fs::path copy = takes.folder() / "HDM_xx_jump_009_120.amc";
+  const fs::path other = takes.folder() / "HDM_yy_jump_009_120.amc";
+  fs::copy_file(takes.files()[0], copy);
+  fs::copy_file(takes.files()[0], other);
+  fs::copy_file(takes.folder() / "HDM_xx.asf", takes.folder() / "HDM_yy.asf");
+  std::vector<ImportSource> sources = takes.Sources();
+  sources.push_back({.file = copy});
+  sources.push_back({.file = other});
+  ImportOptions options = MadeUpTakes::Options();
+  std::vector<std::size_t> heard;
+  options.progress = [&](std::string_view, std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, 4U);
+    heard.push_back(done);
+    return true;
+  };
+  EXPECT_EQ(ImportTakes(takes.library(), sources, options).added, 4);
+  EXPECT_TRUE(std::ranges::is_sorted(heard));
+  EXPECT_EQ(heard.back(), 4U);
+  EXPECT_EQ(SegmentFile(takes.Segment(1)).reader().take_count(), 2);
+  const TakeLibrary library(takes.library());
+  const TakeBatch batch = library.Load(options.features, 30);
+  ASSERT_THAT(batch.takes, SizeIs(4));
+  for (const TakeFeatures& take : batch.takes) {
+    EXPECT_EQ(take.features.columns,
+              LoadTakeFeatures({take.path}, options.features, 30, {}).features.columns);
+  }
+  EXPECT_EQ(library.takes()[0].name.class_name, "jump");
+  EXPECT_EQ(library.takes()[3].name.actor, "yy");
+  EXPECT_THAT(VerifyLibrary(takes.library()).damaged, IsEmpty());
+}
+
+TEST(Import, SharesNoDamagedFeatures) {
+  const MadeUpTakes takes(1);
+  takes.Import();
+  test::Spoil(takes.Segment(1), 64 + 64 + 3);
+  const fs::path copy = takes.folder() / "HDM_xx_jump_009_120.amc";
+  fs::copy_file(takes.files()[0], copy);
+  ImportTakes(takes.library(), std::vector<ImportSource>{{.file = copy}}, MadeUpTakes::Options());
+  const VerifyReport report = VerifyLibrary(takes.library());
+  ASSERT_THAT(report.damaged, SizeIs(1));
+  EXPECT_EQ(report.damaged[0].path, fs::canonical(takes.files()[0]));
+  EXPECT_THAT(TakeLibrary(takes.library()).Load(MadeUpTakes::Options().features, 30).takes,
+              SizeIs(1));
+}
+
+// AMC has no field for its rate: the same bytes under another name are another motion.
+TEST(Import, KnowsThatNamesTellRates) {
+  const MadeUpTakes takes(1);
+  const std::string bytes = test::ReadText(takes.files()[0]);
+  test::WriteText(takes.files()[0], bytes.substr(bytes.find(":FULLY-SPECIFIED")));
+  takes.Import();
+  const fs::path slower = takes.folder() / "HDM_xx_wave_001_060.amc";
+  fs::copy_file(takes.files()[0], slower);
+  ImportTakes(takes.library(), std::vector<ImportSource>{{.file = slower}}, MadeUpTakes::Options());
+  const FeatureSet features = MadeUpTakes::Options().features;
+  const TakeLibrary library(takes.library());
+  ASSERT_THAT(library.takes(), SizeIs(2));
+  EXPECT_EQ(library.takes()[0].rate_hz, 60);
+  const TakeBatch batch = library.Load(features, 30);
+  ASSERT_THAT(batch.takes, SizeIs(2));
+  for (const TakeFeatures& take : batch.takes) {
+    EXPECT_EQ(take.features.columns,
+              LoadTakeFeatures({take.path}, features, 30, {}).features.columns)
+        << take.path;
+  }
+}
+
 TEST(Import, GoesOnAfterABadFile) {
   const MadeUpTakes takes;
   test::WriteText(takes.files()[1], "no motion");
@@ -249,6 +321,37 @@ TEST(Import, RefusesAFolderWithOtherThingsInIt) {
               ImportTakes(takes.files()[0], takes.Sources(), MadeUpTakes::Options());
             }).code(),
             ErrorCode::kIoFailure);
+}
+
+// Without their catalogue segments look like leftovers, and may be somebody's.
+TEST(Import, KeepsSegmentsWhoseCatalogueIsGone) {
+  const MadeUpTakes takes(1);
+  takes.Import();
+  const std::string bytes = test::ReadText(takes.Segment(1));
+  const auto expect_refused = [&] {
+    for (const auto& use : {std::function<void()>([&] { takes.Import(); }),
+                            std::function<void()>([&] { (void)VerifyLibrary(takes.library()); }),
+                            std::function<void()>([&] { TakeLibrary opened(takes.library()); })}) {
+      const Error error = test::ErrorOf(use);
+      EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("holds a file such as 00000001.segment"),
+                                               HasSubstr("restore it from a copy")));
+    }
+    EXPECT_EQ(test::ReadText(takes.Segment(1)), bytes);
+  };
+  test::WriteText(takes.library() / "catalogue.sqlite", "");
+  expect_refused();
+  fs::remove(takes.library() / "catalogue.sqlite");
+  expect_refused();
+  EXPECT_FALSE(fs::exists(takes.library() / "catalogue.sqlite"));
+}
+
+TEST(Import, LeavesAStrangersFolderAsItIs) {
+  const MadeUpTakes takes(1);
+  test::WriteText(takes.library() / "segments" / "trip.segment", "of somebody");
+  EXPECT_THAT(test::ErrorOf([&] { takes.Import(); }).what(), HasSubstr("such as trip.segment"));
+  EXPECT_THAT(FilesBelow(takes.library()), ElementsAre("segments"));
+  EXPECT_EQ(test::ReadText(takes.library() / "segments" / "trip.segment"), "of somebody");
 }
 
 }  // namespace

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "kinebase/library/library_upkeep.h"
 #include "library/made_up_takes.h"
+#include "library/sqlite_database.h"
 
 namespace kinebase {
 namespace {
@@ -86,6 +89,37 @@ TEST_F(DamagedLibrary, IsMendedByRemovingAndImportingAgain) {
   EXPECT_THAT(RemoveTakes(takes_.library(), {.damaged = true}), IsEmpty());
 }
 
+// What cannot be read here and now may be sound, and is not removed.
+TEST_F(DamagedLibrary, IsNotOneWhoseSegmentsCannotBeRead) {
+  const fs::path segment = takes_.Segment(1);
+  const fs::path folder = segment.parent_path();
+  const auto expect_kept = [&](ErrorCode code, const std::string& remedy) {
+    const Error refused = ErrorOf([&] { RemoveTakes(takes_.library(), {.damaged = true}); });
+    EXPECT_EQ(refused.code(), code);
+    EXPECT_THAT(refused.what(), testing::AllOf(HasSubstr(segment.string()), HasSubstr(remedy),
+                                               testing::Not(HasSubstr("--damaged"))));
+    EXPECT_THAT(TakeLibrary(takes_.library()).takes(), SizeIs(3));
+    EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, testing::Not(IsEmpty()));
+  };
+  const std::string bytes = test::ReadText(segment);
+  std::string newer = bytes;
+  newer[8] = 2;
+  test::WriteText(segment, newer);
+  expect_kept(ErrorCode::kMismatch, "use a newer one");
+
+  fs::remove(segment);
+  fs::create_directory(segment);  // The system refuses to read it, to every user.
+  expect_kept(ErrorCode::kIoFailure, "permissions");
+  fs::remove(segment);
+
+  test::WriteText(segment, bytes);
+  const fs::path away = takes_.library() / "away";
+  fs::rename(folder, away);  // As on a disk that is not there.
+  expect_kept(ErrorCode::kIoFailure, "permissions");
+  fs::rename(away, folder);
+  ExpectDamaged({});
+}
+
 TEST_F(DamagedLibrary, WithADamagedCatalogueSaysSo) {
   const fs::path catalogue = takes_.library() / "catalogue.sqlite";
   const std::string good = test::ReadText(catalogue);
@@ -100,6 +134,41 @@ TEST_F(DamagedLibrary, WithADamagedCatalogueSaysSo) {
   test::WriteText(catalogue, bad);
   EXPECT_EQ(ErrorOf([&] { (void)VerifyLibrary(takes_.library()); }).code(),
             ErrorCode::kMalformedFile);
+}
+
+// Numbers that no import writes; places of hits are computed from them.
+TEST_F(DamagedLibrary, WithImpossibleTakesInItsCatalogueSaysSo) {
+  const fs::path catalogue = takes_.library() / "catalogue.sqlite";
+  const std::string good = test::ReadText(catalogue);
+  for (const std::string change : {"frames = -5", "frames = 0", "frames = 9223372036854775807",
+                                   "rate_hz = 9e999", "rate_hz = 0", "rate_hz = -120.0"}) {
+    SCOPED_TRACE(change);
+    test::WriteText(catalogue, good);
+    internal::SqliteDatabase(catalogue, internal::SqliteDatabase::Access::kCreate)
+        .Execute(("UPDATE takes SET " + change + " WHERE path LIKE '%wave_002%'").c_str());
+    for (const auto& use : {std::function<void()>([&] { TakeLibrary opened(takes_.library()); }),
+                            std::function<void()>([&] { (void)VerifyLibrary(takes_.library()); }),
+                            std::function<void()>([&] { takes_.Import(); })}) {
+      const Error error = ErrorOf(use);
+      EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("wave_002_120.amc"),
+                                               HasSubstr("restore it from a copy")));
+    }
+  }
+}
+
+TEST_F(DamagedLibrary, WhoseNumbersHaveRunOutTakesNoMore) {
+  const fs::path catalogue = takes_.library() / "catalogue.sqlite";
+  for (const char* last : {"9223372036854775807", "-7"}) {
+    internal::SqliteDatabase(catalogue, internal::SqliteDatabase::Access::kCreate)
+        .Execute(
+            ("UPDATE sqlite_sequence SET seq = " + std::string(last) + " WHERE name = 'segments'")
+                .c_str());
+    test::WriteMadeUpTake(takes_.files()[1], 77, 44);
+    const Error error = ErrorOf([&] { takes_.Import(); });
+    EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
+    EXPECT_THAT(error.what(), HasSubstr(last));
+  }
 }
 
 TEST_F(DamagedLibrary, OfANewerVersionIsRefusedWithAWord) {
@@ -144,6 +213,10 @@ TEST(TakeLibrary, SaysWhatItLacks) {
   EXPECT_THAT(load(bonn, {.classes = {"run"}}, false), HasSubstr("class 'run'; there are: wave"));
   RemoveTakes(takes.library(), {.filter = {.actors = {"xx"}}});
   EXPECT_THAT(load(bonn, {}, false), HasSubstr("holds no takes"));
+  const fs::path plain = test::WriteMadeUpTake(takes.folder() / "HDM_xx.amc", 9, 50);
+  ImportTakes(takes.library(), std::vector<ImportSource>{{.file = plain}}, MadeUpTakes::Options());
+  EXPECT_THAT(load(bonn, {.classes = {"walk"}}, false),
+              testing::EndsWith("has no take of class 'walk': it knows no class of any take"));
 }
 
 TEST(RemoveTakes, TakesPathsFoldersAndNames) {
@@ -163,15 +236,29 @@ TEST(RemoveTakes, TakesPathsFoldersAndNames) {
 
 TEST(FormatTakeList, IsAListOfClipsThatCanBeImported) {
   const MadeUpTakes takes(2);
+  const fs::path classless = takes.folder() / "HDM_xx.amc";
+  test::WriteMadeUpTake(classless, 9, 50);
   takes.Import();
-  const fs::path list = takes.folder() / "list.csv";
+  ImportTakes(takes.library(), std::vector<ImportSource>{{.file = classless}},
+              MadeUpTakes::Options());
+  // Somewhere else, beside another file of the same name.
+  const test::TemporaryFolder elsewhere;
+  const fs::path list = elsewhere.path() / "list.csv";
+  test::WriteText(elsewhere.path() / classless.filename(), "another");
   test::WriteText(list, FormatTakeList(TakeLibrary(takes.library()).takes()));
   std::vector<TakeFailure> failures;
   const auto sources = ListedSources(list, {}, failures);
   EXPECT_THAT(failures, IsEmpty());
-  ASSERT_THAT(sources, SizeIs(2));
-  EXPECT_EQ(sources[0].class_name, "wave");
-  EXPECT_EQ(ImportTakes(takes.library(), sources, MadeUpTakes::Options()).unchanged, 2);
+  ASSERT_THAT(sources, SizeIs(3));
+  EXPECT_EQ(sources[0].file, fs::canonical(classless));
+  EXPECT_EQ(sources[0].class_name, "");
+  EXPECT_EQ(sources[1].class_name, "wave");
+  EXPECT_EQ(ImportTakes(takes.library(), sources, MadeUpTakes::Options()).unchanged, 3);
+  // To learn from it, each clip needs a class.
+  EXPECT_THAT(ErrorOf([&] { (void)ClipsOfClass(list, "wave", {}, {}); }).what(),
+              HasSubstr("list.csv:2: a clip without a class"));
+  test::WriteText(list, FormatTakeList(std::span(TakeLibrary(takes.library()).takes()).subspan(1)));
+  EXPECT_THAT(ClipsOfClass(list, "wave", {}, {}), SizeIs(2));
 }
 
 }  // namespace

@@ -158,6 +158,57 @@ TEST_P(Filter, RulesOutWhatIsFarOff) {
   }
 }
 
+// Their quotients are infinite, or nothing: still no column within τ may be lost.
+TEST_P(Filter, LosesNothingToTheSmallestAndLargestNumbers) {
+  const DeltaTarget target(GetParam());
+  Random random(36);
+  const double least = std::numeric_limits<double>::denorm_min();
+  const double smallest = std::numeric_limits<double>::min();
+  const double largest = std::numeric_limits<double>::max();
+  for (const double weight : {2 * least, smallest / 1000, smallest, 1e-300, 1.0, largest / 64}) {
+    for (const double tau : {least, smallest, 1e-300, 1e-6, 0.3}) {
+      SCOPED_TRACE(testing::Message() << "weight " << weight << ", tau " << tau);
+      QuantizedTemplate motion_template = RandomQuantized(random, 5, 39, Profile::kBonn);
+      motion_template.costs.assign(motion_template.columns.size() * 39, weight);
+      std::vector<std::uint64_t> recording = RandomRecording(random, 200, 39);
+      Perform(random, motion_template, recording);
+      const FilterPlan plan(motion_template, tau);
+      if (!plan.rules_out()) continue;
+      std::vector<char> is_left(recording.size());
+      for (const ColumnRun& run : FilterRange(plan, recording, 0, recording.size())) {
+        std::fill(is_left.begin() + static_cast<std::ptrdiff_t>(run.first),
+                  is_left.begin() + static_cast<std::ptrdiff_t>(run.last) + 1, 1);
+      }
+      const DeltaCurve curve = ComputeDeltaReference(motion_template, recording);
+      for (std::size_t i = 0; i < is_left.size(); ++i) {
+        if (curve.delta[i] > tau) continue;
+        ASSERT_EQ(is_left[i], 1) << i;
+      }
+    }
+  }
+}
+
+// A path of one column reaches nowhere, and yet what lies close by is computed in one go.
+TEST_P(Filter, JoinsWhatATemplateOfOneColumnLeaves) {
+  const DeltaTarget target(GetParam());
+  TemplateMatrix matrix{.rate_hz = 30, .feature_count = 39};
+  matrix.values.assign(39, 1.0);
+  matrix.weights.assign(1, 1.0);
+  const QuantizedTemplate motion_template = Quantize(matrix, 0.1, Profile::kBonn);
+  const FilterPlan plan(motion_template, 0.1);
+  ASSERT_TRUE(plan.rules_out());
+  std::vector<std::uint64_t> recording(5000, 0);
+  for (const std::size_t match : {100, 102, 164, 1000, 1023, 1024, 3000}) {
+    recording[match] = AllFeatures(39);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> runs;
+  for (const ColumnRun& run : FilterRange(plan, recording, 0, recording.size())) {
+    runs.emplace_back(run.first, run.last);
+  }
+  EXPECT_THAT(runs, testing::ElementsAre(testing::Pair(100, 164), testing::Pair(1000, 1024),
+                                         testing::Pair(3000, 3000)));
+}
+
 INSTANTIATE_TEST_SUITE_P(Targets, Filter, ::testing::ValuesIn(SupportedDeltaTargets()),
                          [](const auto& target) { return DeltaTargetName(target.param); });
 
@@ -171,6 +222,13 @@ TEST(FilterPlan, IsForThresholdsThatRuleSomethingOut) {
   QuantizedTemplate any = motion_template;
   for (QuantizedColumn& column : any.columns) column = {};
   EXPECT_FALSE(FilterPlan(any, 0.1).rules_out());
+  QuantizedTemplate tiny = motion_template;
+  for (QuantizedColumn& column : tiny.columns) column.consistent = AllFeatures(39);
+  tiny.costs.assign(tiny.columns.size() * 39, 1e-323);  // All of a column, divided by 255, is 0.
+  EXPECT_FALSE(FilterPlan(tiny, 0.1).rules_out());
+  tiny.costs.assign(tiny.columns.size() * 39, 1e-306);  // 65535 / all of a column is infinite.
+  EXPECT_FALSE(FilterPlan(tiny, 1e-310).rules_out());
+  EXPECT_TRUE(FilterPlan(tiny, 0.1).rules_out());
 }
 
 }  // namespace

@@ -40,12 +40,14 @@ struct Removal {
 // taken. Says which. All or none, whatever happens.
 //
 // Errors  Those of TakeLibrary; InvalidArgument if nothing was asked for; NotFound for a name,
-//         actor or class that is not there; IoFailure if somebody else is writing.
+//         actor or class that is not there; IoFailure if somebody else is writing. With `damaged`
+//         also IoFailure and Mismatch for a segment that may be sound, but cannot be read here.
 std::vector<std::filesystem::path> RemoveTakes(const std::filesystem::path& library,
                                                const Removal& removal);
 
-// The takes as a list of clips: file,class,actor,take,format,frames,rate_hz, a row a take. It can
-// be learned from, evaluated and imported again.
+// The takes as a list of clips: file,class,actor,take,format,frames,rate_hz, a row a take, files by
+// their full paths. It can be imported again wherever it lies and, where all takes have a class,
+// learned from and evaluated.
 [[nodiscard]] std::string FormatTakeList(std::span<const StoredTake> takes);
 
 }  // namespace kinebase

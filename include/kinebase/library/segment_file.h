@@ -44,8 +44,8 @@
 
 namespace kinebase {
 
-// Stands for the bytes that a take was read from, its skeleton's and the options of reading: XXH3,
-// 128 bits.
+// Stands for the bytes that a take was read from, its skeleton's and the way of reading them: its
+// format, the options and the rate that its name tells. XXH3, 128 bits.
 using ContentKey = std::array<std::uint64_t, 2>;
 
 struct SegmentTake {

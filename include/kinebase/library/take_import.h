@@ -67,8 +67,8 @@ struct ImportReport {
 ImportReport ImportTakes(const std::filesystem::path& library,
                          std::span<const ImportSource> sources, const ImportOptions& options);
 
-// The clips of a list (columns file, class, actor, …), looked up as ReadClipList does. Those that
-// are nowhere go into `failures`.
+// The clips of a list (columns file, class, actor, …), looked up as ReadClipList does; an
+// empty class is none. Those that are nowhere go into `failures`.
 // Errors  As ReadClipList.
 [[nodiscard]] std::vector<ImportSource> ListedSources(
     const std::filesystem::path& list, std::span<const std::filesystem::path> folders,

@@ -77,8 +77,9 @@ class TakeLibrary {
   void CheckFilter(const TakeFilter& filter) const;
 
   // The words of a take where they are in its segment file; valid as long as the library lives.
-  // Errors  NotFound if the take has no such features; MalformedFile, NotFound or IoFailure if its
-  //         segment is damaged, missing or unreadable, naming it and what to do.
+  // Errors  NotFound if the take has no such features; MalformedFile or NotFound if its segment is
+  //         damaged or missing; IoFailure if it cannot be read, Mismatch if it is of a newer
+  //         version: then it may be sound. Each names the segment and what to do.
   // Cost    O(columns), at the speed of memory: the checksum is compared.
   [[nodiscard]] std::span<const std::uint64_t> Columns(const StoredTake& take,
                                                        std::uint64_t feature_set_hash,

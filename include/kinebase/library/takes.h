@@ -105,19 +105,26 @@ struct ListedClip {
   std::int64_t line = 0;  // Of the list.
 };
 
+// Whether each clip of a list needs a class.
+enum class ListedClass { kRequired, kOptional };
+
 // A list as it stands, `file` still empty.
 // list    For messages.
-// Errors  MalformedFile: no such table, a clip without a file or class, with its line.
+// Errors  MalformedFile: no such table, a clip without a file or a class that it needs, with its
+//         line.
 [[nodiscard]] std::vector<ListedClip> ParseClipList(std::string_view text,
-                                                    const std::filesystem::path& list);
+                                                    const std::filesystem::path& list,
+                                                    ListedClass needs = ListedClass::kRequired);
 
-// All of them. Files are looked up by name below the list's folder, then below `folders`.
+// All of them. A file that is named in full and exists is that one; others are looked up by name
+// below the list's folder, then below `folders`.
 // Errors  MalformedFile.
 [[nodiscard]] std::vector<ListedClip> ReadClipList(const std::filesystem::path& list,
-                                                   std::span<const std::filesystem::path> folders);
+                                                   std::span<const std::filesystem::path> folders,
+                                                   ListedClass needs = ListedClass::kRequired);
 
 // Clips of a list (columns file, class, actor, …) that belong to a class and to one of `actors`
-// (empty: all). Files are looked up by name below the list's folder, then below `folders`.
+// (empty: all). Files are looked up as ReadClipList does.
 // Errors  NotFound: a file of the list that is nowhere; a class that the list lacks, naming those
 //         that there are; MalformedFile.
 [[nodiscard]] std::vector<TakeStretch> ClipsOfClass(const std::filesystem::path& list,

@@ -137,6 +137,9 @@ void AppendLeft(const BoundRow& row, const Stripes& stripes, std::size_t from, s
   }
 }
 
+// Runs that are nearer are one: for a template of one column, too, a run has its price.
+constexpr std::size_t kLeastApart = 64;
+
 void FilterRangeOnTarget(const FilterPlan& plan, const std::uint64_t* columns, std::size_t begin,
                          std::size_t end, std::vector<ColumnRun>& runs) {
   const std::size_t rows = plan.rows().size();
@@ -150,7 +153,7 @@ void FilterRangeOnTarget(const FilterPlan& plan, const std::uint64_t* columns, s
     const BoundRow& last = BoundTile(plan, columns, tile, stripes, *work, left);
     const std::size_t from = std::min(stripes.count, begin > tile ? begin - tile : 0);
     if (from == stripes.count || !AnyWithin(last, stripes, plan.limit())) continue;
-    AppendLeft(last, stripes, from, plan.limit(), tile, reach, runs);
+    AppendLeft(last, stripes, from, plan.limit(), tile, std::max(reach, kLeastApart), runs);
   }
 }
 

@@ -59,7 +59,7 @@ RowCosts CostsOfRow(const QuantizedTemplate& motion_template, std::size_t column
   const bool is_counted = motion_template.costs.empty();
   row.unit = is_counted ? asked.scale : most / kMostOfATable;
   row.most = is_counted ? most * asked.scale : most;
-  if (is_counted || most == 0) return row;
+  if (is_counted || !std::isnormal(row.unit)) return row;
   for (auto& [nibble, costs] : row.nibbles) {
     for (double& cost : costs) cost = std::floor(cost / row.unit * (1 - kSlack));
   }
@@ -82,6 +82,12 @@ FilterPlan::FilterPlan(const QuantizedTemplate& motion_template, double tau)
   if (most == 0) return;  // Everything matches.
   const double path = tau * static_cast<double>(columns);
   const double units_of_a_cost = std::min(kUnitsOfTau / path, kMostUnits / most);
+  // Numbers so small, or so large, that their quotients are no numbers any more bound nothing.
+  const bool has_units =
+      std::ranges::all_of(
+          rows, [](const RowCosts& row) { return row.most == 0 || std::isnormal(row.unit); }) &&
+      std::isnormal(units_of_a_cost);
+  if (!has_units) return;
   limit_ = static_cast<std::uint16_t>(std::floor(path * units_of_a_cost * (1 + kSlack)) + 1);
   tables_.reserve(columns * kNibblesOfAWord);  // The spans below stay valid.
   for (const RowCosts& row : rows) {
