@@ -38,6 +38,7 @@ class MadeUpTakes {
 
   [[nodiscard]] std::vector<ImportSource> Sources() const {
     std::vector<ImportSource> sources;
+    sources.reserve(files_.size());
     for (const auto& file : files_) sources.push_back({.file = file});
     return sources;
   }
