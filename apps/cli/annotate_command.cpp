@@ -188,7 +188,7 @@ void ChooseThresholds(std::vector<Query>& queries, const std::map<FeatureKey, Ta
                               query.motion_template.name));
     }
     SetThreshold(query, *tau);
-    if (calibration) calibration = HalfAt(*calibration, *tau);
+    if (calibration) calibration = HalfAt(*tau, calibration->slope);
   }
 }
 

@@ -1,6 +1,7 @@
 // kinebase evaluate: how well methods find classes in actors they have not seen.
 
 #include <memory>
+#include <set>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -173,7 +174,7 @@ Rows AccuracyRows(const std::vector<AnnotateEvaluation>& results) {
   return rows;
 }
 
-// What --methods names.
+// What --methods names, each once.
 struct Chosen {
   std::vector<Method> methods;
   std::vector<Baseline> baselines;
@@ -181,7 +182,9 @@ struct Chosen {
 
 Chosen ChosenMethods(const std::vector<std::string>& names) {
   Chosen chosen;
+  std::set<std::string> seen;
   for (const std::string& name : names) {
+    if (!seen.insert(name).second) continue;
     if (const Method* method = FindMethod(name)) {
       chosen.methods.push_back(*method);
     } else {
@@ -281,18 +284,16 @@ int Run(const EvaluateCommandOptions& options, const CLI::App& command) {
   return data.failures.empty() ? kDone : kPartFailed;
 }
 
-// protocol, methods  Which a preset decides itself.
-void AddPresetOptions(CLI::App& command, EvaluateCommandOptions& options, CLI::Option* protocol,
-                      CLI::Option* methods) {
+// decided  Options that a preset decides itself.
+void AddPresetOptions(CLI::App& command, EvaluateCommandOptions& options,
+                      const std::vector<CLI::Option*>& decided) {
   const auto presets = PaperPresetNames();
   CLI::Option* preset = command.add_option(
       "--preset", options.preset,
       "Instead: table1 to table5, figure7 or figure8 of the motion template paper, its figures "
       "beside ours");
-  preset->check(OneOf(std::vector<std::string>(presets.begin(), presets.end())))
-      ->excludes(protocol)
-      ->excludes(methods)
-      ->type_name("NAME");
+  preset->check(OneOf(std::vector<std::string>(presets.begin(), presets.end())))->type_name("NAME");
+  for (CLI::Option* option : decided) preset->excludes(option);
   command
       .add_option("--paper-classes", options.paper_classes,
                   "What the paper's classes are called in the list: CSV with columns class, hdm05")
@@ -333,10 +334,10 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
   protocol->check(OneOf({"leave-one-actor-out", "half", "annotate"}))
       ->capture_default_str()
       ->type_name("NAME");
-  command
-      ->add_option("--thresholds", options->thresholds,
-                   "Where annotate's come from: training clips, or what other motion costs")
-      ->check(OneOf({"training", "background"}))
+  CLI::Option* thresholds =
+      command->add_option("--thresholds", options->thresholds,
+                          "Where annotate's come from: training clips, or what other motion costs");
+  thresholds->check(OneOf({"training", "background"}))
       ->capture_default_str()
       ->type_name("training|background");
   std::vector<std::string> names;
@@ -345,7 +346,7 @@ void AddEvaluateCommand(CLI::App& program, int& exit_code) {
   CLI::Option* methods =
       command->add_option("--methods", options->methods, "Methods, side by side");
   methods->delimiter(',')->check(OneOf(names))->type_name("NAMES");
-  AddPresetOptions(*command, *options, protocol, methods);
+  AddPresetOptions(*command, *options, {protocol, methods, thresholds});
   command->add_option("--format", options->format, "Tables for people, or for a document")
       ->check(OneOf({"text", "markdown"}))
       ->capture_default_str()

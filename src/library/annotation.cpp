@@ -119,14 +119,6 @@ void SettleBorders(Candidates& segments) {
   segments = std::move(settled);
 }
 
-// Smallest Δ that a path reaches; +inf where the recording is too short.
-double LeastCost(const QuantizedTemplate& motion_template, const FeatureMatrix& features) {
-  const DeltaCurve curve = ComputeDelta(motion_template, features.columns);
-  double least = std::numeric_limits<double>::infinity();
-  for (const double delta : curve.delta) least = std::min(least, delta);
-  return least;
-}
-
 // Below what other recordings cost at their best.
 std::optional<double> ThresholdBelow(std::vector<double> least) {
   if (least.empty()) return std::nullopt;
@@ -311,17 +303,6 @@ std::vector<int> TracksByBodyPart(std::span<const AnnotationTemplate> templates,
     }
   }
   return tracks;
-}
-
-std::optional<double> ThresholdFromBackground(const QuantizedTemplate& motion_template,
-                                              std::span<const FeatureMatrix> background,
-                                              int threads) {
-  for (const FeatureMatrix& recording : background) CheckFeatures(motion_template, recording);
-  std::vector<double> least(background.size());
-  ParallelFor(background.size(), threads,
-              [&](std::size_t i) { least[i] = LeastCost(motion_template, background[i]); });
-  std::erase_if(least, [](double cost) { return !std::isfinite(cost); });
-  return ThresholdBelow(std::move(least));
 }
 
 std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_template,

@@ -8,8 +8,10 @@
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
+#include "kinebase/templates/calibration.h"
 #include "kinebase/templates/learning.h"
 #include "kinebase/templates/styles.h"
+#include "library/every_other.h"
 #include "library/lookalikes.h"
 #include "library/threshold_rule.h"
 
@@ -31,29 +33,6 @@ constexpr std::array<Method, 6> kMethods = {
 };
 
 using Clips = std::vector<const LabelledClip*>;
-
-MotionTemplate LearnClass(const std::string& class_name, const Clips& clips,
-                          const FeatureSet& features, const ClassLearningOptions& options) {
-  std::vector<TemplateMatrix> performances;
-  std::vector<TemplateClip> sources;
-  for (const LabelledClip* clip : clips) {
-    performances.push_back(ToTemplateMatrix(clip->take.features));
-    sources.push_back({.file = clip->take.path.filename().string(),
-                       .first_frame = clip->take.stretch.first_frame,
-                       .last_frame = clip->take.stretch.last_frame});
-  }
-  const LearnedMatrix learned = LearnTemplate(
-      performances,
-      {.profile = options.learning, .max_rounds = options.max_rounds, .threads = options.threads});
-  return {.name = class_name,
-          .learning = options.learning,
-          .matching = options.matching,
-          .feature_set = features.name,
-          .feature_set_hash = features.hash,
-          .matrix = learned.matrix,
-          .clips = std::move(sources),
-          .rounds = static_cast<int>(learned.largest_costs.size())};
-}
 
 // Clips of a class by style; all of them where styles are not asked for.
 std::vector<Clips> StylesOf(const Clips& clips, const ClassLearningOptions& options) {
@@ -118,7 +97,8 @@ void GatherUnlabelled(std::span<const MotionTemplate> templates, std::span<const
   }
 }
 
-// What right hits usually cost, and what the best wrong one does.
+// What right hits usually cost, and what the best wrong one does; empty if one of them is not
+// known.
 struct CostRange {
   double right = 0;
   double wrong = 0;
@@ -144,8 +124,7 @@ std::optional<CostRange> UsualCosts(const ClassEvidence& evidence) {
   }
   if (std::isinf(range.wrong))
     range.wrong = internal::Median(evidence.unlabelled).value_or(range.wrong);
-  // A class that is usually mistaken, or one of which nothing is known.
-  if (!(range.wrong > range.right) || std::isinf(range.wrong)) return std::nullopt;
+  if (std::isinf(range.wrong)) return std::nullopt;
   return range;
 }
 
@@ -158,9 +137,9 @@ std::vector<std::string> GroupsOf(std::span<const LabelledClip* const> clips) {
     actors.insert(clip->actor);
   }
   if (actors.size() > 1) return groups;
-  std::map<std::string, int> seen;  // By class.
+  internal::EveryOther every_other;
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    groups[i] = seen[clips[i]->class_name]++ % 2 == 0 ? "even" : "odd";
+    groups[i] = every_other.Takes(clips[i]->class_name) ? "even" : "odd";
   }
   return groups;
 }
@@ -217,6 +196,31 @@ LabelledBatch LoadLabelledClips(std::span<const ListedClip> listed, const Featur
     batch.clips.push_back({std::move(take), clip.class_name, clip.actor});
   }
   return batch;
+}
+
+MotionTemplate LearnClass(const std::string& class_name, std::span<const LabelledClip* const> clips,
+                          const FeatureSet& features, const ClassLearningOptions& options) {
+  std::vector<TemplateMatrix> performances;
+  std::vector<TemplateClip> sources;
+  performances.reserve(clips.size());
+  sources.reserve(clips.size());
+  for (const LabelledClip* clip : clips) {
+    performances.push_back(ToTemplateMatrix(clip->take.features));
+    sources.push_back({.file = clip->take.path.filename().string(),
+                       .first_frame = clip->take.stretch.first_frame,
+                       .last_frame = clip->take.stretch.last_frame});
+  }
+  const LearnedMatrix learned = LearnTemplate(
+      performances,
+      {.profile = options.learning, .max_rounds = options.max_rounds, .threads = options.threads});
+  return {.name = class_name,
+          .learning = options.learning,
+          .matching = options.matching,
+          .feature_set = features.name,
+          .feature_set_hash = features.hash,
+          .matrix = learned.matrix,
+          .clips = std::move(sources),
+          .rounds = static_cast<int>(learned.largest_costs.size())};
 }
 
 std::vector<MotionTemplate> LearnClasses(std::span<const LabelledClip* const> clips,
@@ -293,10 +297,12 @@ void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates) {
     if (of_class == evidence.end()) continue;
     const std::optional<CostRange> range = UsualCosts(of_class->second);
     if (!range) continue;
+    const bool is_mistaken = range->wrong < range->right;
+    if (range->wrong == range->right || (is_mistaken && !each.contrast)) continue;
     each.tau = internal::ThresholdBetween(range->right, range->wrong);
     each.tau_origin = "half way from right to wrong hits in the training clips";
-    each.calibration =
-        internal::CalibrationAt(*each.tau, internal::kSteepness / (range->wrong - range->right));
+    if (is_mistaken) continue;
+    each.calibration = HalfAt(*each.tau, internal::kSteepness / (range->wrong - range->right));
   }
 }
 

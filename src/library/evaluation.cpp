@@ -12,6 +12,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/search/template_search.h"
 #include "library/class_ranking.h"
+#include "library/every_other.h"
 
 namespace kinebase {
 namespace {
@@ -30,10 +31,9 @@ std::vector<Fold> MakeFolds(const EvaluationData& data, Protocol protocol) {
   std::vector<Fold> folds;
   if (protocol == Protocol::kHalf) {
     Fold& fold = folds.emplace_back();
-    std::map<std::string, int> seen;  // By class.
+    internal::EveryOther every_other;
     for (std::size_t i = 0; i < data.clips.size(); ++i) {
-      const bool trains = seen[data.clips[i].class_name]++ % 2 == 0;
-      (trains ? fold.train : fold.test).push_back(i);
+      (every_other.Takes(data.clips[i].class_name) ? fold.train : fold.test).push_back(i);
     }
     return folds;
   }

@@ -5,6 +5,7 @@
 
 #include "fmt/format.h"
 #include "kinebase/search/template_search.h"
+#include "kinebase/templates/calibration.h"
 #include "library/threshold_rule.h"
 
 namespace kinebase::internal {
@@ -79,7 +80,7 @@ void MoveThreshold(double tau, const std::string& origin, const std::optional<do
   if (!motion_template.calibration) return;
   const double slope =
       width && *width > 0 ? kSteepness / *width : motion_template.calibration->slope;
-  motion_template.calibration = CalibrationAt(tau, slope);
+  motion_template.calibration = HalfAt(tau, slope);
 }
 
 // Right marks alone: what they cost is allowed.

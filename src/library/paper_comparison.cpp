@@ -6,27 +6,17 @@
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/error.h"
-#include "kinebase/templates/learning.h"
+#include "library/every_other.h"
 #include "library/paper_experiments.h"
 
 namespace kinebase {
 namespace internal {
 
 MotionTemplate LearnFrom(std::span<const LabelledClip* const> clips, const PaperInput& input) {
-  std::vector<TemplateMatrix> performances;
-  performances.reserve(clips.size());
-  for (const LabelledClip* clip : clips) {
-    performances.push_back(ToTemplateMatrix(clip->take.features));
-  }
-  const LearnedMatrix learned = LearnTemplate(
-      performances, {.profile = input.options.profile, .threads = input.options.threads});
-  return {.name = clips.front()->class_name,
-          .learning = input.options.profile,
-          .matching = input.options.profile,
-          .feature_set = input.features.name,
-          .feature_set_hash = input.features.hash,
-          .matrix = learned.matrix,
-          .rounds = static_cast<int>(learned.largest_costs.size())};
+  return LearnClass(clips.front()->class_name, clips, input.features,
+                    {.learning = input.options.profile,
+                     .matching = input.options.profile,
+                     .threads = input.options.threads});
 }
 
 void SetFigure(const PaperTable& table, PaperRow& row, std::string_view column, double figure) {
@@ -60,12 +50,12 @@ void ReportRow(const PaperInput& input, std::size_t done, std::size_t total) {
 
 namespace {
 
-std::vector<bool> EveryOther(const EvaluationData& data) {
+std::vector<bool> FirstHalf(const EvaluationData& data) {
   std::vector<bool> learned_from;
   learned_from.reserve(data.clips.size());
-  std::map<std::string, int> seen;  // By class.
+  internal::EveryOther every_other;
   for (const LabelledClip& clip : data.clips) {
-    learned_from.push_back(seen[clip.class_name]++ % 2 == 0);
+    learned_from.push_back(every_other.Takes(clip.class_name));
   }
   return learned_from;
 }
@@ -127,7 +117,7 @@ PaperComparison CompareWithPaper(PaperPreset preset, const EvaluationData& data,
                                    .features = features,
                                    .options = options,
                                    .class_names = data.ClassNames(),
-                                   .learned_from = internal::EveryOther(data)};
+                                   .learned_from = internal::FirstHalf(data)};
   PaperComparison comparison{.table = ReadPaperTable(preset), .notes = {}, .sequence = {}};
   const bool is_figure = preset == PaperPreset::kFigure7 || preset == PaperPreset::kFigure8;
   // Whatever class is here can stand in a figure.

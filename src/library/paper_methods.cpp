@@ -4,6 +4,7 @@
 #include <map>
 
 #include "fmt/format.h"
+#include "library/every_other.h"
 #include "library/paper_experiments.h"
 
 namespace kinebase::internal {
@@ -65,13 +66,13 @@ EvaluationData DataFor(const PaperInput& input, const PaperTable& table, std::si
 // Evaluate looks for every class of its clips. Those that the table has not are only to be
 // searched: of them what is not learned from becomes other motion.
 void LookForTableOnly(const PaperTable& table, EvaluationData& data) {
-  std::map<std::string, int> seen;  // By class.
+  internal::EveryOther every_other;
   std::vector<LabelledClip> kept;
   for (LabelledClip& clip : data.clips) {
     if (std::ranges::find(table.rows, clip.class_name, &PaperRow::paper_class) !=
         table.rows.end()) {
       kept.push_back(std::move(clip));
-    } else if (seen[clip.class_name]++ % 2 == 1) {
+    } else if (!every_other.Takes(clip.class_name)) {
       data.distractors.push_back(std::move(clip.take));
     }
   }

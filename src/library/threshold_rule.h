@@ -6,8 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "kinebase/templates/calibration.h"
-
 namespace kinebase::internal {
 
 // Of the confidence between them: it falls from .99 to .01.
@@ -15,11 +13,6 @@ inline constexpr double kSteepness = 10;
 
 // Half way from right to wrong hits.
 inline double ThresholdBetween(double right, double wrong) { return std::midpoint(right, wrong); }
-
-// ½ at τ.
-inline Calibration CalibrationAt(double tau, double slope) {
-  return {.slope = slope, .offset = -slope * tau};
-}
 
 inline std::optional<double> Median(std::vector<double> costs) {
   if (costs.empty()) return std::nullopt;

@@ -13,8 +13,6 @@ double CostAt(const Calibration& calibration, double confidence) {
   return (std::log((1 - confidence) / confidence) - calibration.offset) / calibration.slope;
 }
 
-Calibration HalfAt(const Calibration& calibration, double cost) {
-  return {.slope = calibration.slope, .offset = -calibration.slope * cost};
-}
+Calibration HalfAt(double cost, double slope) { return {.slope = slope, .offset = -slope * cost}; }
 
 }  // namespace kinebase

@@ -226,6 +226,9 @@ TEST_F(ContrastCommands, SayWhatIsMissing) {
             "leave out --method mt"},
            {{"annotate", squat, "--in", squat, "--confidence", "1"}, 2, "from 0.001 to 0.999"},
            {{"evaluate", "--clips", list, "--thresholds", "background"}, 2, "--protocol annotate"},
+           {{"evaluate", "--clips", list, "--thresholds", "training", "--preset", "table1"},
+            2,
+            "--preset excludes --thresholds"},
            {{"evaluate", "--clips", out}, 1, "x.json"},
            {{"evaluate", "--clips", list, "--methods", "best"}, 2, "mt+"},
            {{"evaluate", "--clips", list, "--possibly-relevant", list}, 2, "--labels"},
@@ -236,7 +239,7 @@ TEST_F(ContrastCommands, SayWhatIsMissing) {
 
 TEST_F(ContrastCommands, EvaluateLeavesEachActorOut) {
   const ProgramResult run = RunKinebase({"evaluate", "--clips", library_.list(), "--methods",
-                                         "mt,mt+weights,mt+", "--json", "--quiet"});
+                                         "mt,mt+weights,mt,mt+", "--json", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json methods = json::parse(run.out).at("methods");
   ASSERT_EQ(methods.size(), 3);

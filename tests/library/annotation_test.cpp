@@ -193,12 +193,15 @@ TEST(TracksByBodyPart, SeparateArmsFromLegs) {
 }
 
 TEST(ThresholdFromBackground, IsAShareOfTheSecondBestRecording) {
-  const QuantizedTemplate one = test::OneFeatureTemplate();
-  std::vector<FeatureMatrix> background = {test::OneFeatureTake(20, {{10, 14}}).features,
-                                           test::OneFeatureTake(20, {}).features,
-                                           test::OneFeatureTake(2, {}).features};
+  const MotionTemplate one{.matrix = test::OneFeatureMatrix()};
+  const std::vector<TakeFeatures> takes = {test::OneFeatureTake(20, {{10, 14}}),
+                                           test::OneFeatureTake(20, {}),
+                                           test::OneFeatureTake(2, {})};
+  std::vector<RecordingStreams> background;
+  for (const TakeFeatures& take : takes) background.push_back({.features = &take.features});
   // The first recording is a perfect match, the second 0 throughout, the third too short.
-  const DeltaCurve curve = ComputeDeltaReference(one, background[1].columns);
+  const DeltaCurve curve =
+      ComputeDeltaReference(test::OneFeatureTemplate(), takes[1].features.columns);
   const double least = *std::ranges::min_element(curve.delta);
   ASSERT_GT(least, 0);
   EXPECT_DOUBLE_EQ(ThresholdFromBackground(one, background).value(), 0.7 * least);

@@ -25,11 +25,15 @@ inline TakeFeatures OneFeatureTake(int columns,
 }
 
 // "0, then five times 1, then 0".
-inline QuantizedTemplate OneFeatureTemplate() {
+inline TemplateMatrix OneFeatureMatrix() {
   TemplateMatrix matrix{.rate_hz = 30, .feature_count = 1};
   matrix.values = {0, 1, 1, 1, 1, 1, 0};
   matrix.weights.assign(7, 1);
-  return Quantize(matrix, 0.1, Profile::kBonn);
+  return matrix;
+}
+
+inline QuantizedTemplate OneFeatureTemplate() {
+  return Quantize(OneFeatureMatrix(), 0.1, Profile::kBonn);
 }
 
 }  // namespace kinebase::test

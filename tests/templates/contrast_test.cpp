@@ -185,7 +185,7 @@ TEST(Confidence, TellsTheCostOfWhoWantsToBeThatSure) {
 
 TEST(Confidence, MovesAsAWhole) {
   const Calibration calibration{.slope = 40, .offset = -8};
-  const Calibration moved = HalfAt(calibration, 0.3);
+  const Calibration moved = HalfAt(0.3, calibration.slope);
   for (const double cost : {0.0, 0.17, 0.2, 0.4}) {
     EXPECT_NEAR(Confidence(moved, cost + 0.1), Confidence(calibration, cost), 1e-12);
   }

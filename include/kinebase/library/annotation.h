@@ -107,15 +107,10 @@ struct PlaceRange {
 //
 // Why 0.7: between 0.6 and 0.8 it made little difference on actors of HDM05 that were left out;
 // docs/annotation.md says how far that choice can be trusted.
-// Returns  Empty if no recording is long enough for the template.
-// Errors   Mismatch, as FindCandidates.
-[[nodiscard]] std::optional<double> ThresholdFromBackground(
-    const QuantizedTemplate& motion_template, std::span<const FeatureMatrix> background,
-    int threads = 0);
-
-// The same of what RankHits says that hits cost: of templates that know what sets their class off,
-// and of plain ones.
+// Costs are those of RankHits: of templates that know what sets their class off, and of plain ones.
+//
 // ingredients  Which of a template's are used, and threads; the rest of the options is not.
+// Returns      Empty if no recording is long enough for the template.
 // Errors       As RankHits.
 [[nodiscard]] std::optional<double> ThresholdFromBackground(
     const MotionTemplate& motion_template, std::span<const RecordingStreams> background,

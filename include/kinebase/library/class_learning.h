@@ -76,6 +76,17 @@ struct ClassLearningOptions {
   ProgressCallback progress;
 };
 
+// The template of a class as the paper has it, without what sets it off from other motion.
+//
+// clips    At least one.
+// options  Those of learning, and threads.
+// Errors   InvalidArgument: no clips, or of different features.
+// Cost     Of LearnTemplate.
+[[nodiscard]] MotionTemplate LearnClass(const std::string& class_name,
+                                        std::span<const LabelledClip* const> clips,
+                                        const FeatureSet& features,
+                                        const ClassLearningOptions& options = {});
+
 // One template for each class of the clips, by name; with styles, one for each style of a class,
 // next to each other and of the same name. The background is all clips, of all classes, and what is
 // not labelled; where there is one class alone, how often features are one is measured on that,
@@ -128,8 +139,10 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 // two medians. The threshold lies half way from there to the best wrong hit in any clip. At the
 // threshold the confidence is ½. Of a class that is learned alone, wrong is the median of the
 // recordings without labels. Where nothing unseen is known of a class, those that were learned from
-// decide alone, and the threshold is low. A class without right or wrong hits, or whose wrong hits
-// cost no more than its right ones, keeps what it has.
+// decide alone, and the threshold is low. A class without right or wrong hits, or
+// whose hits cost the same, keeps what it has; so does a plain template whose wrong hits cost less
+// than its right ones, as thresholds of plain costs are known from elsewhere. One with a contrast
+// gets its threshold even then, but no confidence.
 void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates);
 
 // What each method searches with: templates as LearnClasses, GatherEvidence and Calibrate make

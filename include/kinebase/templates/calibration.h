@@ -22,7 +22,7 @@ struct KnownHit {
 // confidence  Above 0 and below 1.
 [[nodiscard]] double CostAt(const Calibration& calibration, double confidence);
 
-// As steep, and ½ at another cost: for a threshold that was chosen elsewhere.
-[[nodiscard]] Calibration HalfAt(const Calibration& calibration, double cost);
+// ½ at a cost, such as a threshold.
+[[nodiscard]] Calibration HalfAt(double cost, double slope);
 
 }  // namespace kinebase
