@@ -24,7 +24,7 @@ constexpr std::int64_t kMarginDivisor = 20;
 
 using Candidates = std::vector<AnnotationCandidate>;
 
-void CheckFeatures(const QuantizedTemplate& motion_template, const FeatureMatrix& features) {
+void CheckFeatures(const QuantizedTemplate& motion_template, const FeatureView& features) {
   if (motion_template.feature_count == features.feature_count &&
       motion_template.rate_hz == features.rate_hz) {
     return;
@@ -120,18 +120,11 @@ void SettleBorders(Candidates& segments) {
 }
 
 // Smallest Δ that a path reaches; +inf where the recording is too short.
-double LeastCost(const QuantizedTemplate& motion_template, const FeatureMatrix& features) {
+double LeastCost(const QuantizedTemplate& motion_template, const FeatureView& features) {
   const DeltaCurve curve = ComputeDelta(motion_template, features.columns);
   double least = std::numeric_limits<double>::infinity();
   for (const double delta : curve.delta) least = std::min(least, delta);
   return least;
-}
-
-// Below what other recordings cost at their best.
-std::optional<double> ThresholdBelow(std::vector<double> least) {
-  if (least.empty()) return std::nullopt;
-  std::ranges::sort(least);
-  return kShareOfFalseCost * least[std::min<std::size_t>(1, least.size() - 1)];
 }
 
 // Groups of features that a template asks for, as bits by `group_of`.
@@ -157,7 +150,7 @@ std::vector<int> GroupNumbers(const FeatureSet& features) {
 }
 
 // Columns become frames of the take's file, from 1.
-Candidates InFrames(Candidates candidates, const TakeFeatures& take) {
+Candidates InFrames(Candidates candidates, const TakeView& take) {
   for (AnnotationCandidate& candidate : candidates) {
     const FrameRange frames = internal::FramesOfHit(take, static_cast<int>(candidate.first),
                                                     static_cast<int>(candidate.last));
@@ -170,7 +163,7 @@ Candidates InFrames(Candidates candidates, const TakeFeatures& take) {
 }  // namespace
 
 std::vector<AnnotationCandidate> FindCandidates(const AnnotationTemplate& motion_template,
-                                                const FeatureMatrix& features) {
+                                                const FeatureView& features) {
   CheckFeatures(motion_template.quantized, features);
   const DeltaCurve curve = ComputeDelta(motion_template.quantized, features.columns);
   Candidates candidates;
@@ -187,7 +180,7 @@ std::vector<AnnotationCandidate> FindCandidates(const AnnotationTemplate& motion
 }
 
 std::vector<AnnotationCandidate> FindCandidates(const AnnotationTemplate& motion_template,
-                                                const TakeFeatures& take) {
+                                                const TakeView& take) {
   return InFrames(FindCandidates(motion_template, take.features), take);
 }
 
@@ -222,8 +215,8 @@ std::vector<AnnotationCandidate> FindCandidates(std::span<const MotionTemplate> 
 
 std::vector<AnnotationCandidate> FindCandidates(std::span<const MotionTemplate> templates,
                                                 std::span<const int> classes,
-                                                const TakeFeatures& take) {
-  return InFrames(FindCandidates(templates, classes, {&take.features, &take.poses}), take);
+                                                const TakeView& take) {
+  return InFrames(FindCandidates(templates, classes, {take.features, take.poses}), take);
 }
 
 std::vector<AnnotationCandidate> ChooseSegments(const std::vector<AnnotationCandidate>& candidates,
@@ -324,9 +317,9 @@ std::optional<double> ThresholdFromBackground(const QuantizedTemplate& motion_te
   return ThresholdBelow(std::move(least));
 }
 
-std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_template,
-                                              std::span<const RecordingStreams> background,
-                                              const RankOptions& ingredients) {
+std::vector<double> LeastCosts(const MotionTemplate& motion_template,
+                               std::span<const RecordingStreams> background,
+                               const RankOptions& ingredients) {
   RankOptions options = ingredients;
   options.tau = std::numeric_limits<double>::infinity();
   options.rivals = false;
@@ -339,7 +332,19 @@ std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_templ
     entry->second = std::min(entry->second, ranked.hit.cost);
   }
   const auto costs = std::views::values(least);
-  return ThresholdBelow({costs.begin(), costs.end()});
+  return {costs.begin(), costs.end()};
+}
+
+std::optional<double> ThresholdBelow(std::vector<double> least_costs) {
+  if (least_costs.empty()) return std::nullopt;
+  std::ranges::sort(least_costs);
+  return kShareOfFalseCost * least_costs[std::min<std::size_t>(1, least_costs.size() - 1)];
+}
+
+std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_template,
+                                              std::span<const RecordingStreams> background,
+                                              const RankOptions& ingredients) {
+  return ThresholdBelow(LeastCosts(motion_template, background, ingredients));
 }
 
 }  // namespace kinebase
