@@ -41,6 +41,22 @@ class AlignedBytes {
   std::size_t size_;
 };
 
+// Lists of any bytes find stretches of the recording, by place, or are refused.
+void TryLists(const std::string& bytes, int features, int columns) {
+  try {
+    const kinebase::RunLists lists(bytes, features, columns);
+    for (const int misses : {0, 1}) {
+      int end = 0;
+      for (const auto& run : lists.Find({.tested = 1, .ones = 1, .misses = misses}, 0)) {
+        Check(end <= run.first && run.first <= run.last && run.last < columns);
+        end = run.last + 1;
+      }
+    }
+  } catch (const kinebase::Error& error) {
+    Check(error.code() == kinebase::ErrorCode::kMalformedFile);
+  }
+}
+
 std::vector<kinebase::SegmentTake> ReadAll(const SegmentReader& segment) {
   std::vector<kinebase::SegmentTake> takes;
   for (int i = 0; i < segment.take_count(); ++i) {
@@ -52,11 +68,7 @@ std::vector<kinebase::SegmentTake> ReadAll(const SegmentReader& segment) {
                      .feature_count = segment.feature_count(),
                      .columns = {columns.begin(), columns.end()}};
     if (segment.HasPoses(i)) take.poses = segment.Poses(i);
-    const std::string lists = segment.RunListsOf(i);
-    const kinebase::RunLists runs(lists, segment.feature_count(), segment.ColumnCount(i));
-    for (const kinebase::Stretch& run : runs.Find({.tested = 1, .ones = 1}, i)) {
-      Check(run.first <= run.last && run.last < segment.ColumnCount(i));
-    }
+    TryLists(segment.RunListsOf(i), segment.feature_count(), segment.ColumnCount(i));
   }
   return takes;
 }

@@ -245,14 +245,14 @@ std::string SegmentReader::RunListsOf(int take) const {
                 {.file = file_, .byte = static_cast<std::int64_t>(row.lists)});
   }
   const auto checksum = Get<std::uint64_t>(bytes_, row.lists + sizeof(std::uint64_t));
-  std::string bytes(Block(first, size, checksum));
-  try {
-    (void)RunLists(bytes, feature_count_, ColumnCount(take));
-  } catch (const Error& error) {
-    throw Error(error.code(), error.message(),
-                {.file = file_, .byte = static_cast<std::int64_t>(first)});
-  }
-  return bytes;
+  return std::string(Block(first, size, checksum));
+}
+
+void SegmentReader::CheckRunLists(int take) const {
+  if (RunListsOf(take) == FormatRunLists({rate_hz_, feature_count_, Columns(take)})) return;
+  throw Error(ErrorCode::kMalformedFile,
+              fmt::format("has lists of take {} that are not those of its words", take + 1),
+              {.file = file_, .byte = static_cast<std::int64_t>(Row(take).lists)});
 }
 
 }  // namespace kinebase

@@ -238,7 +238,12 @@ void TakeLibrary::ReleaseMemory(std::span<const StoredTake* const> takes) const 
 void TakeLibrary::Check(const StoredTake& take) const {
   for (const StoredFeatures& features : take.features) {
     (void)Columns(take, features.feature_set_hash, features.rate_hz);
-    (void)RunListsOf(take, features.feature_set_hash, features.rate_hz);
+    const Location location = Find(take, features.feature_set_hash, features.rate_hz);
+    try {
+      location.segment->CheckRunLists(location.slot);
+    } catch (const Error& error) {
+      ThrowUnusable(error);
+    }
     if (features.has_poses) (void)Poses(take, features.feature_set_hash, features.rate_hz);
   }
 }

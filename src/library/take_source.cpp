@@ -61,7 +61,9 @@ class StoredReader {
     try {
       ReadInto(take, read);
     } catch (const Error& error) {
-      read.error = error;
+      read.error = error.place().file.empty()
+                       ? Error(error.code(), error.message(), {.file = take.path})
+                       : error;
     }
     return read;
   }

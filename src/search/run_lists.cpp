@@ -38,17 +38,59 @@ std::optional<std::uint32_t> TakeNumber(std::string_view& bytes) {
   return std::nullopt;
 }
 
-// Whether a list is one of a recording of this size: its stretches, and the one that is left out,
-// are not empty.
-bool IsList(std::string_view list, int column_count) {
-  std::int64_t columns = 0;
-  for (bool is_first = true; !list.empty(); is_first = false) {
-    const auto length = TakeNumber(list);
-    if (!length || (*length == 0 && !is_first)) return false;
-    columns += *length;
-    if (columns >= column_count) return false;
+// The stretches of a list, one after the other; the last reaches to the end of the recording.
+class ListReader {
+ public:
+  ListReader(std::string_view list, int column_count) : list_(list), column_count_(column_count) {}
+
+  [[nodiscard]] int first() const { return first_; }
+  [[nodiscard]] int end() const { return end_; }
+  [[nodiscard]] bool shows() const { return shows_; }
+
+  // Goes on to the next, if there is one.
+  // Errors  MalformedFile: a stretch is empty that is not the first, or leaves the recording.
+  bool Next() {
+    if (end_ == column_count_) return false;
+    if (has_begun_) shows_ = !shows_;
+    first_ = end_;
+    if (list_.empty()) {
+      end_ = column_count_;
+    } else {
+      const auto length = TakeNumber(list_);
+      if (!length || (*length == 0 && has_begun_) ||
+          *length >= static_cast<std::uint32_t>(column_count_ - first_)) {
+        throw Error(ErrorCode::kMalformedFile,
+                    fmt::format("a list of a feature is none of {} columns", column_count_));
+      }
+      end_ += static_cast<int>(*length);
+    }
+    has_begun_ = true;
+    return true;
   }
-  return true;
+
+ private:
+  std::string_view list_;  // What follows.
+  int column_count_;
+  int first_ = 0;
+  int end_ = 0;
+  bool shows_ = false;
+  bool has_begun_ = false;
+};
+
+// The parts of `runs` where a feature is as it is wanted. No more of the list is read than matters.
+std::vector<Stretch> Intersect(std::span<const Stretch> runs, ListReader list, bool is_wanted) {
+  std::vector<Stretch> parts;
+  auto run = runs.begin();
+  while (run != runs.end() && list.Next()) {
+    if (list.shows() != is_wanted) continue;
+    while (run != runs.end() && run->last < list.first()) ++run;
+    for (; run != runs.end() && run->first < list.end(); ++run) {
+      parts.push_back({run->recording, std::max(run->first, list.first()),
+                       std::min(run->last, list.end() - 1)});
+      if (run->last >= list.end()) break;
+    }
+  }
+  return parts;
 }
 
 // A column where a tested feature begins to disagree with the pattern, or ceases to.
@@ -58,18 +100,15 @@ struct Change {
 };
 
 // Adds the changes of a feature; returns whether it disagrees in the first column.
-bool AppendChanges(std::string_view list, bool is_wanted, std::vector<Change>& changes) {
-  int column = 0;
-  bool shows = false;
+bool AppendChanges(ListReader list, bool is_wanted, std::vector<Change>& changes) {
   bool disagrees_at_first = is_wanted;
-  while (const auto length = TakeNumber(list)) {
-    column += static_cast<int>(*length);
-    shows = !shows;
-    if (column == 0) {
-      disagrees_at_first = !is_wanted;
+  while (list.Next()) {
+    const bool agrees = list.shows() == is_wanted;
+    if (list.first() == 0) {
+      if (list.end() > 0) disagrees_at_first = !agrees;
       continue;
     }
-    changes.push_back({column, shows == is_wanted ? -1 : 1});
+    changes.push_back({list.first(), agrees ? -1 : 1});
   }
   return disagrees_at_first;
 }
@@ -104,10 +143,9 @@ RunLists::RunLists(std::string_view bytes, int feature_count, int column_count)
   lists_.reserve(static_cast<std::size_t>(feature_count));
   for (int feature = 0; feature < feature_count; ++feature) {
     const auto size = TakeNumber(bytes);
-    if (!size || *size > bytes.size() || !IsList(bytes.substr(0, *size), column_count)) {
-      throw Error(
-          ErrorCode::kMalformedFile,
-          fmt::format("the list of feature {} is none of {} columns", feature + 1, column_count));
+    if (!size || *size > bytes.size() || (*size > 0 && column_count == 0)) {
+      throw Error(ErrorCode::kMalformedFile,
+                  fmt::format("the list of feature {} is cut off", feature + 1));
     }
     lists_.push_back(bytes.substr(0, *size));
     bytes.remove_prefix(*size);
@@ -119,12 +157,27 @@ RunLists::RunLists(std::string_view bytes, int feature_count, int column_count)
 }
 
 std::vector<Stretch> RunLists::Find(const FeaturePattern& pattern, int recording) const {
+  if (column_count_ == 0) return {};
+  return pattern.misses == 0 ? FindExactly(pattern, recording) : FindNearly(pattern, recording);
+}
+
+std::vector<Stretch> RunLists::FindExactly(const FeaturePattern& pattern, int recording) const {
+  std::vector<Stretch> found = {{recording, 0, column_count_ - 1}};
+  for (std::uint64_t tested = pattern.tested; tested != 0 && !found.empty(); tested &= tested - 1) {
+    const auto feature = static_cast<std::size_t>(std::countr_zero(tested));
+    const bool is_wanted = ((pattern.ones >> feature) & 1U) != 0;
+    found = Intersect(found, {lists_.at(feature), column_count_}, is_wanted);
+  }
+  return found;
+}
+
+std::vector<Stretch> RunLists::FindNearly(const FeaturePattern& pattern, int recording) const {
   std::vector<Change> changes;
   int misses = 0;
   for (std::uint64_t tested = pattern.tested; tested != 0; tested &= tested - 1) {
     const auto feature = static_cast<std::size_t>(std::countr_zero(tested));
     const bool is_wanted = ((pattern.ones >> feature) & 1U) != 0;
-    if (AppendChanges(lists_.at(feature), is_wanted, changes)) ++misses;
+    if (AppendChanges({lists_.at(feature), column_count_}, is_wanted, changes)) ++misses;
   }
   std::ranges::sort(changes, {}, &Change::column);
   std::vector<Stretch> found;
@@ -139,7 +192,7 @@ std::vector<Stretch> RunLists::Find(const FeaturePattern& pattern, int recording
       first = -1;
     }
   }
-  if (first >= 0 && column_count_ > 0) {
+  if (first >= 0) {
     found.push_back({.recording = recording, .first = first, .last = column_count_ - 1});
   }
   return found;

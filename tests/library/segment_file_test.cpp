@@ -160,6 +160,13 @@ TEST(SegmentFile, OfADamagedTakeLeavesTheOthersReadable) {
   EXPECT_THAT(segment.Columns(1), ElementsAreArray(takes[1].features.columns));
 }
 
+TEST(SegmentFile, HasListsThatAreThoseOfItsWords) {
+  const std::string bytes = FormatSegment(ThreeTakes(), kSet);
+  const AlignedBytes aligned(bytes);
+  const SegmentReader segment(aligned.text(), "a.segment");
+  for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(segment.CheckRunLists(i));
+}
+
 TEST(SegmentFile, OfANewerVersionIsRefusedWithAWord) {
   std::string bytes = FormatSegment(ThreeTakes(), kSet);
   bytes[8] = 3;

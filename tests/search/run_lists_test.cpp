@@ -57,19 +57,23 @@ RC_GTEST_PROP(RunLists, FindWhatTheFeatureIndexFinds, ()) {
 }
 
 TEST(RunLists, OfOtherBytesAreRefused) {
-  const auto error_of = [](std::string_view bytes) {
-    return ErrorOf([&] { (void)RunLists(bytes, 2, 5); });
-  };
   using namespace std::literals;
-  // Cut off, a stretch of no column, one too long, a number longer than it need be, one without an
+  const auto error_of = [](std::string_view bytes, int misses) {
+    return ErrorOf([&] {
+      (void)RunLists(bytes, 2, 5).Find({.tested = 0b11, .ones = 0b11, .misses = misses}, 0);
+    });
+  };
+  // Cut off; a stretch of no column, one too long, a number longer than it need be, one without an
   // end, one of more than 32 bits.
   for (const std::string_view bytes :
        {""sv, "\x00"sv, "\x03\x01"sv, "\x02\x01\x00\x00"sv, "\x02\x03\x02\x00"sv,
-        "\x02\x81\x00\x00"sv, "\x01\x81\x00"sv, "\xFF\xFF\xFF\xFF\x7F\x00"sv}) {
-    EXPECT_EQ(error_of(bytes).code(), ErrorCode::kMalformedFile);
-    EXPECT_THAT(error_of(bytes).what(), HasSubstr("list of feature"));
+        "\x02\x81\x00\x00"sv, "\x01\x81\x00"sv, "\x05\xFF\xFF\xFF\xFF\x7F\x00"sv}) {
+    for (const int misses : {0, 1}) {
+      EXPECT_EQ(error_of(bytes, misses).code(), ErrorCode::kMalformedFile);
+      EXPECT_THAT(error_of(bytes, misses).what(), HasSubstr("list of"));
+    }
   }
-  EXPECT_THAT(error_of("\x00\x00\x00"sv).what(), HasSubstr("1 bytes follow"));
+  EXPECT_THAT(error_of("\x00\x00\x00"sv, 0).what(), HasSubstr("1 bytes follow"));
 }
 
 }  // namespace

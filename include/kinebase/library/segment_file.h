@@ -93,8 +93,10 @@ class SegmentReader {
 
   // Where a take shows each feature: bytes for RunLists. Those of a version 1 segment are made of
   // the words.
+  // They are what was written; CheckRunLists compares them with the words.
   // Cost  O(bytes of the lists), or of Columns and FormatRunLists.
   [[nodiscard]] std::string RunListsOf(int take) const;
+  void CheckRunLists(int take) const;
 
  private:
   struct TakeRow {

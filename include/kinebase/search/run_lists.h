@@ -35,8 +35,9 @@ namespace kinebase {
 class RunLists {
  public:
   // bytes    Valid as long as the object lives.
-  // Errors   MalformedFile: other bytes than FormatRunLists makes of a recording of this size.
-  // Cost     O(bytes).
+  // Errors   MalformedFile: lists that are cut off, or followed by other bytes. What is in them is
+  //          only looked at when it is asked for.
+  // Cost     O(features).
   RunLists(std::string_view bytes, int feature_count, int column_count);
 
   [[nodiscard]] int column_count() const { return column_count_; }
@@ -45,10 +46,15 @@ class RunLists {
   //
   // pattern    Tests no others than these features.
   // recording  What the stretches say.
-  // Cost       O(changes of the tested features · log of them).
+  // Errors     MalformedFile for lists of tested features that are of no such recording.
+  // Cost       O(changes of the tested features); where misses are allowed, times their logarithm.
   [[nodiscard]] std::vector<Stretch> Find(const FeaturePattern& pattern, int recording) const;
 
  private:
+  [[nodiscard]] std::vector<Stretch> FindExactly(const FeaturePattern& pattern,
+                                                 int recording) const;
+  [[nodiscard]] std::vector<Stretch> FindNearly(const FeaturePattern& pattern, int recording) const;
+
   std::vector<std::string_view> lists_;  // [feature]
   int column_count_;
 };
