@@ -15,6 +15,7 @@
 
 #include "kinebase/core/error.h"
 #include "kinebase/library/segment_file.h"
+#include "kinebase/search/run_lists.h"
 
 namespace {
 
@@ -40,6 +41,22 @@ class AlignedBytes {
   std::size_t size_;
 };
 
+// Lists of any bytes find stretches of the recording, by place, or are refused.
+void TryLists(const std::string& bytes, int features, int columns) {
+  try {
+    const kinebase::RunLists lists(bytes, features, columns);
+    for (const int misses : {0, 1}) {
+      int end = 0;
+      for (const auto& run : lists.Find({.tested = 1, .ones = 1, .misses = misses}, 0)) {
+        Check(end <= run.first && run.first <= run.last && run.last < columns);
+        end = run.last + 1;
+      }
+    }
+  } catch (const kinebase::Error& error) {
+    Check(error.code() == kinebase::ErrorCode::kMalformedFile);
+  }
+}
+
 std::vector<kinebase::SegmentTake> ReadAll(const SegmentReader& segment) {
   std::vector<kinebase::SegmentTake> takes;
   for (int i = 0; i < segment.take_count(); ++i) {
@@ -51,6 +68,7 @@ std::vector<kinebase::SegmentTake> ReadAll(const SegmentReader& segment) {
                      .feature_count = segment.feature_count(),
                      .columns = {columns.begin(), columns.end()}};
     if (segment.HasPoses(i)) take.poses = segment.Poses(i);
+    TryLists(segment.RunListsOf(i), segment.feature_count(), segment.ColumnCount(i));
   }
   return takes;
 }
@@ -89,6 +107,16 @@ void MendBlock(std::string& bytes, std::size_t row, std::size_t field, std::uint
   Put(bytes, row + field + 8, XXH3_64bits(bytes.data() + offset, size));
 }
 
+// The same for the lists, whose checksum is in front of them.
+void MendLists(std::string& bytes, std::size_t row) {
+  constexpr std::uint64_t kListHeader = 16;
+  const std::uint64_t offset = Get(bytes, row + 56);
+  if (offset > bytes.size() || kListHeader > bytes.size() - offset) return;
+  const std::uint64_t size = Get(bytes, offset);
+  if (size > bytes.size() - offset - kListHeader) return;
+  Put(bytes, offset + 8, XXH3_64bits(bytes.data() + offset + kListHeader, size));
+}
+
 std::string Mended(std::string bytes) {
   constexpr std::size_t kHeader = 64;
   constexpr std::size_t kRow = 64;
@@ -101,6 +129,7 @@ std::string Mended(std::string bytes) {
     const std::uint64_t columns = std::min<std::uint64_t>(Get(bytes, row + 16), bytes.size());
     MendBlock(bytes, row, 24, 8 * columns);
     MendBlock(bytes, row, 40, 32 + 144 * columns);
+    MendLists(bytes, row);
   }
   const std::string covered = bytes.substr(0, 56) + bytes.substr(kHeader, kRow * takes);
   Put(bytes, 56, XXH3_64bits(covered.data(), covered.size()));

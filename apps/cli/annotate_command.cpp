@@ -12,10 +12,11 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/take_filter.h"
 #include "fmt/format.h"
 #include "fmt/ranges.h"
-#include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/take_annotation.h"
 #include "kinebase/templates/calibration.h"
 #include "kinebase/templates/template_file.h"
 
@@ -29,6 +30,9 @@ struct AnnotateOptions {
   std::vector<fs::path> templates;
   std::vector<std::string> classes;  // "NAME=FILE".
   std::vector<fs::path> paths;
+  fs::path library;  // Instead of paths.
+  TakeFilter filter;
+  std::uint64_t memory_bytes = kDefaultMemoryBytes;
   std::vector<fs::path> background;
   std::optional<double> tau;
   std::optional<double> confidence;
@@ -44,18 +48,7 @@ struct AnnotateOptions {
   std::string feature_set;
 };
 
-// Templates that agree in the hash of their feature set and the rate share the takes' features.
-using FeatureKey = std::pair<std::uint64_t, double>;
-
-// A template that is ready to be looked for.
-struct Query {
-  MotionTemplate motion_template;
-  FeatureSet features;
-  std::string class_name;
-  AnnotationTemplate search;
-
-  [[nodiscard]] FeatureKey key() const { return {features.hash, motion_template.matrix.rate_hz}; }
-};
+using Query = AnnotationQuery;
 
 // "NAME=VALUE"; the name has no '='.
 std::pair<std::string, std::string> SplitAssignment(const std::string& text,
@@ -85,6 +78,9 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
   if (options.templates.empty() && options.classes.empty()) {
     throw UsageError("annotate needs templates: TEMPLATE, or --class NAME=FILE");
   }
+  if (options.paths.empty() && options.library.empty()) {
+    throw UsageError("--in is required, or --library; see 'kinebase annotate --help'");
+  }
   if (options.tau && !options.background.empty()) {
     throw UsageError("annotate takes --tau or --background, not both");
   }
@@ -113,6 +109,17 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
 void SetThreshold(Query& query, double tau) {
   query.search.tau = tau;
   query.motion_template.tau = tau;
+}
+
+std::int64_t MemoryOf(const AnnotateOptions& options) {
+  return static_cast<std::int64_t>(options.memory_bytes);
+}
+
+TakeSource SourceOf(const AnnotateOptions& options) {
+  if (!options.library.empty()) return {options.library, options.filter, MemoryOf(options)};
+  std::vector<TakeStretch> stretches;
+  for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
+  return {std::move(stretches), options.common.load};
 }
 
 Query LoadQuery(const fs::path& file, std::string class_name, const AnnotateOptions& options) {
@@ -149,45 +156,24 @@ std::vector<Query> LoadQueries(const AnnotateOptions& options, std::vector<std::
   return queries;
 }
 
-// The features of some takes for every set and rate that the templates need.
-std::map<FeatureKey, TakeBatch> LoadTakes(const std::vector<fs::path>& paths,
-                                          const std::vector<Query>& queries,
-                                          const AnnotateOptions& options,
-                                          const ProgressCallback& progress) {
-  std::vector<TakeStretch> stretches;
-  for (fs::path& file : FindMotionFiles(paths)) stretches.push_back({.file = std::move(file)});
-  std::map<FeatureKey, TakeBatch> batches;
-  for (const Query& query : queries) {
-    const auto [entry, is_new] = batches.try_emplace(query.key());
-    if (!is_new) continue;
-    const bool with_poses = std::ranges::any_of(
-        queries, [](const Query& each) { return each.motion_template.contrast.has_value(); });
-    entry->second =
-        LoadManyTakeFeatures(stretches, query.features, query.key().second, options.common.load,
-                             options.common.threads, progress, {.poses = with_poses});
-  }
-  return batches;
-}
-
-// A recording whose name says that it shows the class is no background for it.
-void ChooseThresholds(std::vector<Query>& queries, const std::map<FeatureKey, TakeBatch>& batches,
-                      int threads) {
-  for (Query& query : queries) {
-    std::vector<RecordingStreams> background;
-    for (const TakeFeatures& take : batches.at(query.key()).takes) {
-      if (take.name.class_name == query.class_name) continue;
-      background.push_back({.features = &take.features, .poses = &take.poses});
-    }
-    std::optional<Calibration>& calibration = query.motion_template.calibration;
-    const auto tau =
-        ThresholdFromBackground(query.motion_template, background, {.threads = threads});
+// Failures of the background are among those of the takes.
+void ChooseThresholds(std::vector<Query>& queries, const AnnotateOptions& options,
+                      const ProgressCallback& progress, std::vector<TakeFailure>& failures) {
+  const std::vector<TakeSource> background =
+      SourcesIn(options.background, options.common.load, MemoryOf(options));
+  BackgroundThresholds found =
+      FindThresholds(background, queries, options.common.threads, progress);
+  failures = std::move(found.failures);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const std::optional<double>& tau = found.tau[i];
+    std::optional<Calibration>& calibration = queries[i].motion_template.calibration;
     if (!tau) {
       throw Error(ErrorCode::kNotFound,
                   fmt::format("no background is long enough for the template '{}' and of another "
                               "class; add recordings to --background, or give --tau",
-                              query.motion_template.name));
+                              queries[i].motion_template.name));
     }
-    SetThreshold(query, *tau);
+    SetThreshold(queries[i], *tau);
     if (calibration) calibration = HalfAt(*tau, calibration->slope);
   }
 }
@@ -239,28 +225,6 @@ std::vector<int> Tracks(const AnnotateOptions& options, const std::vector<Query>
         TracksByBodyPart(templates, static_cast<int>(classes.size()), queries.front().features);
   }
   return tracks;
-}
-
-void FindSegments(const std::vector<Query>& queries, const std::map<FeatureKey, TakeBatch>& batches,
-                  const std::vector<int>& tracks, const AnnotateOptions& options,
-                  const ProgressCallback& progress, Annotation& annotation) {
-  ParallelFor(
-      annotation.takes.size(), options.common.threads, "annotating", progress, [&](std::size_t i) {
-        std::vector<AnnotationCandidate> candidates;
-        for (const Query& query : queries) {
-          const TakeFeatures& features = batches.at(query.key()).takes[i];
-          const auto found =
-              query.motion_template.contrast
-                  ? FindCandidates(std::span(&query.motion_template, 1),
-                                   std::span(&query.search.motion_class, 1), features)
-                  : FindCandidates(query.search, features);
-          candidates.insert(candidates.end(), found.begin(), found.end());
-        }
-        AnnotatedTake& take = annotation.takes[i];
-        take.segments = ChooseSegments(candidates, tracks);
-        if (!options.merge_s) return;
-        take.segments = MergeSegments(take.segments, std::llround(*options.merge_s * take.rate_hz));
-      });
 }
 
 // Labels with the names of the classes that they mean.
@@ -443,31 +407,31 @@ int Run(const AnnotateOptions& options) {
 
   const ProgressCallback progress = MakeProgress(options.common);
   if (!options.background.empty()) {
-    const auto background = LoadTakes(options.background, queries, options, progress);
-    for (const auto& failure : background.begin()->second.failures) {
-      annotation.failures.push_back(failure);
-    }
-    ChooseThresholds(queries, background, options.common.threads);
+    ChooseThresholds(queries, options, progress, annotation.failures);
   }
   if (options.confidence) AskForConfidence(queries, *options.confidence);
   for (const Query& query : queries) {
     annotation.thresholds.push_back(
         {query.motion_template.name, query.class_name, query.search.tau});
   }
-  const auto batches = LoadTakes(options.paths, queries, options, progress);
-  const TakeBatch& batch = batches.begin()->second;  // All read the same files.
-  annotation.failures.insert(annotation.failures.end(), batch.failures.begin(),
-                             batch.failures.end());
+  AnnotatedTakes annotated = AnnotateTakes(SourceOf(options), queries,
+                                           {.tracks = tracks,
+                                            .merge_s = options.merge_s,
+                                            .threads = options.common.threads,
+                                            .progress = progress});
+  annotation.failures.insert(annotation.failures.end(), annotated.failures.begin(),
+                             annotated.failures.end());
   for (const auto& failure : annotation.failures) PrintError(failure.error.what());
-  if (batch.takes.empty()) return kCouldNot;
-  for (const TakeFeatures& take : batch.takes) {
+  if (annotated.takes.empty()) return kCouldNot;
+  for (TakeSegments& take : annotated.takes) {
     PrintDiagnostics(options.common, take.path, take.diagnostics);
-    annotation.takes.push_back(
-        {.path = take.path, .rate_hz = take.rate_hz, .frame_count = take.frame_count});
+    annotation.takes.push_back({.path = std::move(take.path),
+                                .rate_hz = take.rate_hz,
+                                .frame_count = take.frame_count,
+                                .segments = std::move(take.segments)});
   }
   if (format == "eaf") CheckElan(annotation, options);
   if (!options.truth.empty()) AddTruth(truth, options.truth, annotation);
-  FindSegments(queries, batches, tracks, options, progress, annotation);
   if (!options.truth.empty()) annotation.accuracy = Measure(annotation);
   Show(annotation, format, options);
   return annotation.failures.empty() ? kDone : kPartFailed;
@@ -478,9 +442,15 @@ void AddWhatToFind(CLI::App& command, AnnotateOptions& options) {
                      "Template files, from learn; those of one name are one class");
   command.add_option("--class", options.classes, "A template of a class of this name")
       ->type_name("NAME=FILE");
-  command.add_option("--in", options.paths, "Motion files and folders to annotate")
-      ->required()
-      ->type_name("PATH");
+  auto* paths = command.add_option("--in", options.paths, "Motion files and folders to annotate")
+                    ->type_name("PATH");
+  auto* library = command
+                      .add_option("--library", options.library,
+                                  "Library to annotate instead, from kinebase import")
+                      ->excludes(paths)
+                      ->type_name("FOLDER");
+  for (CLI::Option* filter : AddTakeFilterOptions(command, options.filter)) filter->needs(library);
+  AddMemoryOption(command, options.memory_bytes);
   command
       .add_option("--tau", options.tau,
                   "Largest cost of all classes (default: each template's own, else 0.06)")
@@ -488,7 +458,8 @@ void AddWhatToFind(CLI::App& command, AnnotateOptions& options) {
       ->type_name("COST");
   command
       .add_option("--background", options.background,
-                  "Recordings that show other motion: thresholds are chosen from them")
+                  "Recordings, or libraries, that show other motion: thresholds are chosen from "
+                  "them")
       ->type_name("PATH");
   AddConfidenceOption(command, options.confidence);
   command
@@ -544,8 +515,10 @@ void AddAnnotateCommand(CLI::App& program, int& exit_code) {
   AddForceOption(*command, options->common);
   AddLoadOptions(*command, options->common);
   command->footer(
-      "Example:\n  kinebase annotate squat.template.json kick.template.json --in gym.amc "
-      "--background other/");
+      "Examples:\n"
+      "  kinebase annotate squat.template.json kick.template.json --in gym.amc --background "
+      "other/\n"
+      "  kinebase annotate squat.template.json --library motion.kinebase --actors bd -o bd.csv");
   command->callback([options, &exit_code] { exit_code = Run(*options); });
 }
 

@@ -13,6 +13,7 @@
 #include "fmt/ranges.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/memory_limits.h"
 
 namespace kinebase::cli {
 namespace {
@@ -80,6 +81,28 @@ CLI::Validator PictureFile() {
     const std::string extension = ToLower(std::filesystem::path(text).extension().string());
     return extension == ".png" || extension == ".svg";
   });
+}
+
+CLI::Validator MemorySize() {
+  const auto to_bytes = [](std::string& text) {
+    const std::string given = text;
+    std::uint64_t bytes = 0;
+    const bool is_size =
+        CLI::AsSizeValue(false)(text).empty() && CLI::detail::lexical_cast(text, bytes);
+    if (is_size && bytes >= kLeastMemoryBytes) return std::string();
+    text = given;
+    return fmt::format("takes a size of at least {}M, as 512M or 2G, not {}",
+                       kLeastMemoryBytes >> 20, Quoted(given));
+  };
+  return CLI::Validator(to_bytes, "");
+}
+
+CLI::Option* AddMemoryOption(CLI::App& command, std::uint64_t& bytes) {
+  return command
+      .add_option("--memory", bytes,
+                  "Roughly the most memory that takes use, however many there are (default: 1G)")
+      ->transform(MemorySize())
+      ->type_name("SIZE");
 }
 
 TakeStretch ParseMotionArgument(const std::string& text) {

@@ -21,6 +21,12 @@ namespace kinebase::cli {
 [[nodiscard]] CLI::Validator OneOf(std::vector<std::string> words);
 [[nodiscard]] CLI::Validator PictureFile();  // Ends in .png or .svg.
 
+// A number of bytes, "512M" or "2G" (of 1024 each), at least kLeastMemoryBytes: given on in bytes.
+[[nodiscard]] CLI::Validator MemorySize();
+
+// --memory, for what works on a library; given back for needs().
+CLI::Option* AddMemoryOption(CLI::App& command, std::uint64_t& bytes);
+
 // A motion file that somebody named, or a stretch of it.
 // Errors  UsageError for a stretch that is none, as "take.amc:120"; InvalidArgument for a folder.
 [[nodiscard]] TakeStretch ParseMotionArgument(const std::string& text);

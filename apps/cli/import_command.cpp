@@ -20,6 +20,7 @@ struct ImportCommandOptions {
   std::filesystem::path library;
   bool with_poses = false;
   int takes_per_batch = ImportOptions().takes_per_batch;
+  std::uint64_t memory_bytes = kDefaultMemoryBytes;
 };
 
 constexpr std::uint64_t kMostTakesPerBatch = 10000;
@@ -88,6 +89,7 @@ int Run(const ImportCommandOptions& options) {
                        .load = options.common.load,
                        .threads = options.common.threads,
                        .takes_per_batch = options.takes_per_batch,
+                       .memory_bytes = static_cast<std::int64_t>(options.memory_bytes),
                        .progress = MakeProgress(options.common)};
   import.on_durable = [&](const ImportedTake& take) { ShowTake(take, options.common); };
   std::vector<TakeFailure> missing;
@@ -131,6 +133,7 @@ void AddImportCommand(CLI::App& program, int& exit_code) {
       ->check(WholeNumber(1, kMostTakesPerBatch))
       ->capture_default_str()
       ->type_name("N");
+  AddMemoryOption(*command, options->memory_bytes);
   AddProfileOption(*command, options->features.profile, "Feature set of this profile")
       ->capture_default_str();
   AddFeatureSetOption(*command, options->features.feature_set);

@@ -13,6 +13,8 @@
 #include "cli/update_template.h"
 #include "fmt/format.h"
 #include "kinebase/library/class_learning.h"
+#include "kinebase/library/library_examples.h"
+#include "kinebase/library/take_source.h"
 #include "kinebase/library/takes.h"
 #include "kinebase/templates/learning.h"
 #include "kinebase/templates/template_file.h"
@@ -32,6 +34,8 @@ struct LearnCommandOptions {
   std::string class_name;
   std::vector<std::string> actors;
   std::vector<std::filesystem::path> folders;
+  std::filesystem::path library;  // Instead of clips and lists.
+  std::uint64_t memory_bytes = kDefaultMemoryBytes;
   int max_rounds = 10;
   std::string method;  // As asked for.
   bool all_classes = false;
@@ -60,14 +64,21 @@ void CheckUsage(const LearnCommandOptions& options) {
     }
     return;
   }
+  const bool is_labelled = !options.list.empty() || !options.library.empty();
+  if (!is_labelled &&
+      (!options.class_name.empty() || options.all_classes || !options.actors.empty())) {
+    throw UsageError("--class, --all-classes and --actors choose from a --list or a --library");
+  }
   if (!options.folders.empty() && options.list.empty()) {
     throw UsageError("--in says where the files of a --list or an --update are");
   }
-  if (options.clips.empty() && options.list.empty()) {
-    throw UsageError("learn needs clips, or a list of clips: --list clips.csv --class NAME");
+  if (options.clips.empty() && !is_labelled) {
+    throw UsageError(
+        "learn needs clips, or a list of clips, or a library: --list clips.csv --class NAME");
   }
-  if (!options.list.empty() && options.class_name.empty() != options.all_classes) {
-    throw UsageError("--list needs either --class NAME or --all-classes");
+  if (is_labelled && options.class_name.empty() != options.all_classes) {
+    throw UsageError(fmt::format("{} needs either --class NAME or --all-classes",
+                                 options.library.empty() ? "--list" : "--library"));
   }
   if (options.styles && options.Method() == "mt") {
     throw UsageError("--styles is for --method mt+");
@@ -80,13 +91,13 @@ void CheckUsage(const LearnCommandOptions& options) {
   if (options.Method() == "mt" && !options.background.empty()) {
     throw UsageError("--background is for --method mt+");
   }
-  if (options.Method() == "mt+" && options.list.empty() && options.background.empty()) {
+  if (options.Method() == "mt+" && !is_labelled && options.background.empty()) {
     throw UsageError(
         "--method mt+ needs other motion to set the class off from: --background PATH, or the "
-        "other classes of a --list");
+        "other classes of a --list or a --library");
   }
-  if (!options.clips.empty() && !options.list.empty()) {
-    throw UsageError("learn takes clips or --list, not both");
+  if (!options.clips.empty() && is_labelled) {
+    throw UsageError("learn takes clips, or --list, or --library; one of them");
   }
   if (options.output.empty() && options.name.empty() && options.class_name.empty()) {
     throw UsageError("learn needs --name NAME or -o FILE");
@@ -150,6 +161,18 @@ MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet
   return result;
 }
 
+// The takes of the class that is asked for, in the library.
+TakeFilter ChosenTakes(const LearnCommandOptions& options) {
+  return {.actors = options.actors, .classes = {options.class_name}};
+}
+
+ExampleRequest RequestOf(const LearnCommandOptions& options, const FeatureSet& features) {
+  return {.features = &features,
+          .rate_hz = options.features.rate_hz,
+          .memory_bytes = static_cast<std::int64_t>(options.memory_bytes) / 2,
+          .threads = options.common.threads};
+}
+
 // The clips of all classes of the list, each the background of the others.
 std::vector<ListedClip> ListedClips(const LearnCommandOptions& options) {
   // Says what is wrong with the class that is asked for.
@@ -168,25 +191,62 @@ struct Examples {
   TakeBatch background;
 };
 
-// Recordings of other motion, without those that clips are from: a class is no other motion.
-std::vector<TakeStretch> BackgroundFiles(const LearnCommandOptions& options,
-                                         const LabelledBatch& labelled) {
-  const auto place_of = [](const std::filesystem::path& file) {
-    std::error_code ignored;
-    return std::filesystem::weakly_canonical(file, ignored);
-  };
-  std::set<std::filesystem::path> learned_from;
-  for (const LabelledClip& clip : labelled.clips) learned_from.insert(place_of(clip.take.path));
-  std::vector<TakeStretch> files;
-  for (auto& file : FindMotionFiles(options.background)) {
-    if (!learned_from.contains(place_of(file))) files.push_back({.file = std::move(file)});
+std::filesystem::path PlaceOf(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(file, ignored);
+}
+
+void Append(TakeBatch more, TakeBatch& batch) {
+  std::ranges::move(more.takes, std::back_inserter(batch.takes));
+  std::ranges::move(more.failures, std::back_inserter(batch.failures));
+}
+
+// As much of a library as fits beside what has been read already.
+void AppendLibrary(const std::filesystem::path& library,
+                   const std::set<std::filesystem::path>& learned_from, ExampleRequest request,
+                   const LearnCommandOptions& options, TakeBatch& batch) {
+  request.memory_bytes =
+      std::max<std::int64_t>(request.memory_bytes - ExampleBytes(batch.takes), 0);
+  BackgroundTakes takes = LoadBackgroundTakes(TakeLibrary(library), learned_from, request);
+  if (takes.chosen < takes.available) {
+    PrintNote(options.common,
+              fmt::format("of the background's {} takes {} fit into memory, evenly chosen; "
+                          "--memory takes more",
+                          takes.available, takes.chosen));
   }
-  if (files.empty()) {
+  Append(std::move(takes.batch), batch);
+}
+
+// Recordings of other motion, without those that clips are from: a class is no other motion.
+TakeBatch LoadBackground(const LearnCommandOptions& options, const FeatureSet& features,
+                         const LabelledBatch& labelled, const ProgressCallback& progress) {
+  std::set<std::filesystem::path> learned_from;
+  ExampleRequest request = RequestOf(options, features);
+  for (const LabelledClip& clip : labelled.clips) {
+    learned_from.insert(PlaceOf(clip.take.path));
+    request.memory_bytes -= ExampleBytes(std::span(&clip.take, 1));
+  }
+  std::vector<std::filesystem::path> libraries;
+  std::vector<std::filesystem::path> others;
+  for (const auto& path : options.background) {
+    (IsLibrary(path) ? libraries : others).push_back(path);
+  }
+  std::vector<TakeStretch> files;
+  for (auto& file : others.empty() ? others : FindMotionFiles(others)) {
+    if (!learned_from.contains(PlaceOf(file))) files.push_back({.file = std::move(file)});
+  }
+  TakeBatch batch =
+      LoadManyTakeFeatures(files, features, options.features.rate_hz, options.common.load,
+                           options.common.threads, progress, {.poses = true});
+  for (const auto& library : libraries) {
+    AppendLibrary(library, learned_from, request, options, batch);
+  }
+  if (batch.takes.empty() && batch.failures.empty()) {
     throw Error(ErrorCode::kInvalidArgument,
                 "--background holds nothing but what clips are from; name recordings of other "
                 "motion");
   }
-  return files;
+  return batch;
 }
 
 Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& features) {
@@ -196,7 +256,14 @@ Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& feat
                                 options.common.threads, progress, {.poses = true});
   };
   Examples examples;
-  if (options.list.empty()) {
+  if (!options.library.empty()) {
+    const TakeLibrary library(options.library);
+    if (!options.class_name.empty()) {  // Says what is wrong with it.
+      (void)library.TakesWith(features, options.features.rate_hz, ChosenTakes(options), true);
+    }
+    examples.labelled =
+        LoadLabelledTakes(library, {.actors = options.actors}, RequestOf(options, features));
+  } else if (options.list.empty()) {
     TakeBatch clips = load(ChosenClips(options));
     for (TakeFeatures& take : clips.takes) {
       std::string actor = take.name.actor;
@@ -208,7 +275,7 @@ Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& feat
                                           options.common.load, options.common.threads, progress);
   }
   if (options.background.empty()) return examples;
-  examples.background = load(BackgroundFiles(options, examples.labelled));
+  examples.background = LoadBackground(options, features, examples.labelled, progress);
   return examples;
 }
 
@@ -220,7 +287,7 @@ std::vector<MotionTemplate> LearnTogether(const LearnCommandOptions& options,
   std::vector<RecordingStreams> unlabelled;
   unlabelled.reserve(examples.background.takes.size());
   for (const TakeFeatures& take : examples.background.takes) {
-    unlabelled.push_back({&take.features, &take.poses});
+    unlabelled.push_back({take.features, &take.poses});
   }
   const ClassLearningOptions learning{.learning = options.Learning(),
                                       .matching = options.Matching(),
@@ -273,7 +340,7 @@ std::vector<std::pair<MotionTemplate, std::filesystem::path>> Outputs(
     if (options.all_classes) {
       auto file = FileOfStyle(options.output / DefaultOutput(each.name), style);
       outputs.emplace_back(std::move(each), std::move(file));
-    } else if (options.list.empty() || each.name == options.class_name) {
+    } else if (options.class_name.empty() || each.name == options.class_name) {
       each.name = TemplateName(options);
       outputs.emplace_back(std::move(each), FileOfStyle(options.output, style));
     }
@@ -321,6 +388,23 @@ int RunWithContrast(LearnCommandOptions& options) {
   return failures.empty() ? kDone : kPartFailed;
 }
 
+// What a template is learned from by features alone.
+TakeBatch LoadClips(const LearnCommandOptions& options, const FeatureSet& features,
+                    const ProgressCallback& progress) {
+  if (options.library.empty()) {
+    return LoadManyTakeFeatures(ChosenClips(options), features, options.features.rate_hz,
+                                options.common.load, options.common.threads, progress);
+  }
+  ExampleRequest request = RequestOf(options, features);
+  request.with_poses = false;
+  LabelledBatch labelled =
+      LoadLabelledTakes(TakeLibrary(options.library), ChosenTakes(options), request);
+  TakeBatch batch{.takes = {}, .failures = std::move(labelled.failures)};
+  batch.takes.reserve(labelled.clips.size());
+  for (LabelledClip& clip : labelled.clips) batch.takes.push_back(std::move(clip.take));
+  return batch;
+}
+
 int Run(LearnCommandOptions& options) {
   const Stopwatch watch;
   CheckUsage(options);
@@ -337,11 +421,8 @@ int Run(LearnCommandOptions& options) {
   if (options.output.empty()) options.output = DefaultOutput(TemplateName(options));
   CheckWritable(options.output, options.common.overwrite());
   const FeatureSet features = options.features.Load();
-  const std::vector<TakeStretch> stretches = ChosenClips(options);
   const ProgressCallback progress = MakeProgress(options.common);
-  const TakeBatch batch =
-      LoadManyTakeFeatures(stretches, features, options.features.rate_hz, options.common.load,
-                           options.common.threads, progress);
+  const TakeBatch batch = LoadClips(options, features, progress);
   for (const auto& failure : batch.failures) PrintError(failure.error.what());
   for (const auto& take : batch.takes) {
     PrintDiagnostics(options.common, take.path, take.diagnostics);
@@ -381,7 +462,7 @@ void AddUpdateOptions(CLI::App& command, LearnCommandOptions& options) {
       ->needs(update)
       ->type_name("FILE");
   for (const char* other : {"CLIP", "--name", "--list", "--profile", "--learning", "--matching",
-                            "--rate", "--method", "--background", "--styles"}) {
+                            "--rate", "--method", "--background", "--styles", "--library"}) {
     update->excludes(command.get_option(other));
   }
 }
@@ -402,18 +483,21 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
                    ->add_option("--list", options->list,
                                 "Table of clips instead: CSV with columns file, class, actor")
                    ->type_name("FILE");
-  auto* class_name = command->add_option("--class", options->class_name, "Class in the list")
-                         ->type_name("NAME")
-                         ->needs(list);
-  class_name->excludes(
-      command
-          ->add_flag("--all-classes", options->all_classes,
-                     "A template for each class of the list, into the folder -o (method mt+)")
-          ->needs(list));
+  auto* class_name =
+      command->add_option("--class", options->class_name, "Class in the list or library")
+          ->type_name("NAME");
+  class_name->excludes(command->add_flag(
+      "--all-classes", options->all_classes,
+      "A template for each class of the list or library, into the folder -o (method mt+)"));
   command->add_option("--actors", options->actors, "Only clips of these actors: a,b")
       ->delimiter(',')
-      ->needs(list)
       ->type_name("NAMES");
+  command
+      ->add_option("--library", options->library,
+                   "Takes of a library instead, from kinebase import, by their classes")
+      ->excludes(list)
+      ->type_name("FOLDER");
+  AddMemoryOption(*command, options->memory_bytes);
   command
       ->add_option("--in", options->folders,
                    "Folders with the files of the list, or of the template and its hits")
@@ -438,7 +522,8 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       ->type_name("mt|mt+");
   command
       ->add_option("--background", options->background,
-                   "Other motion for mt+, without labels: best what will be searched")
+                   "Other motion for mt+, without labels, also a library: best what will be "
+                   "searched")
       ->type_name("PATH");
   command->add_flag("--styles", options->styles,
                     "Several templates for a class whose clips fall into groups (method mt+)");
@@ -457,6 +542,8 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       "  kinebase learn --list clips.csv --class squat1Reps --actors bd,bk -o squat.template.json\n"
       "  kinebase learn --list clips.csv --all-classes --method mt+ --background takes/ -o "
       "classes\n"
+      "  kinebase learn --library motion.kinebase --class squat1Reps --background "
+      "motion.kinebase\n"
       "  kinebase learn --update squat.template.json --marks hits.csv -o better.template.json");
   command->callback([options, &exit_code] { exit_code = Run(*options); });
 }

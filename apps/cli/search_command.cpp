@@ -1,8 +1,10 @@
 // kinebase search: every place where a motion class happens.
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
-#include <set>
+#include <numeric>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -15,9 +17,8 @@
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/features/vocabulary.h"
-#include "kinebase/library/take_library.h"
 #include "kinebase/library/take_search.h"
-#include "kinebase/library/takes.h"
+#include "kinebase/library/take_source.h"
 #include "kinebase/templates/calibration.h"
 #include "kinebase/templates/keyframes.h"
 #include "kinebase/templates/quantized_template.h"
@@ -32,6 +33,7 @@ struct SearchCommandOptions {
   std::vector<std::filesystem::path> paths;
   std::filesystem::path library;  // Instead of paths.
   TakeFilter filter;
+  std::uint64_t memory_bytes = kDefaultMemoryBytes;
   std::optional<double> tau;
   std::optional<double> confidence;
   std::size_t most_hits = 500;
@@ -90,13 +92,6 @@ struct Query {
   MotionTemplate motion_template;
   FeatureSet features;
   std::optional<FuzzyQuery> fuzzy;
-};
-
-// Recordings with the features of one set at one rate, and where they show what: made when the
-// first template with keyframes asks for it.
-struct SearchedTakes {
-  TakeBatch batch;
-  std::optional<KeyframeIndex> index;
 };
 
 // How much of the recordings was looked at, in columns of all templates.
@@ -197,79 +192,192 @@ Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& o
   return query;
 }
 
-std::vector<TakeHit> SearchIn(const Query& query, SearchedTakes& takes, const SearchOptions& search,
-                              Coverage& coverage) {
-  const MotionTemplate& motion_template = query.motion_template;
-  const std::vector<TakeFeatures>& all = takes.batch.takes;
-  std::int64_t columns = 0;
-  for (const TakeFeatures& take : all) columns += take.features.column_count();
-  coverage.all += columns;
-  if (motion_template.keyframes.empty()) {
-    coverage.searched += columns;
-    return SearchTakes(Quantize(motion_template), all, search);
-  }
-  if (!takes.index) takes.index = IndexTakes(all, query.features);
-  const std::vector<Stretch> stretches =
-      takes.index->Preselect(motion_template.keyframes, motion_template.matrix.column_count());
-  coverage.searched += CountColumns(stretches);
-  return SearchTakes(Quantize(motion_template), all, stretches, search);
-}
-
-std::vector<TakeHit> SearchFuzzilyIn(const Query& query, const SearchedTakes& takes,
-                                     const SearchCommandOptions& options, Coverage& coverage) {
-  for (const TakeFeatures& take : takes.batch.takes) coverage.all += take.features.column_count();
-  coverage.searched = coverage.all;
-  return SearchTakes(*query.fuzzy, takes.batch.takes,
-                     {.faults = options.faults, .most_hits = options.most_hits});
-}
-
 double ThresholdOf(const MotionTemplate& motion_template, const SearchCommandOptions& options) {
   return options.tau.value_or(motion_template.tau.value_or(kDefaultTau));
 }
 
-std::vector<NamedHit> SearchOne(std::span<const Query> queries, std::size_t index,
-                                SearchedTakes& takes, const SearchCommandOptions& options,
-                                const ProgressCallback& progress, Coverage& coverage) {
-  const Query& query = queries[index];
-  const SearchOptions search{.tau = ThresholdOf(query.motion_template, options),
-                             .most_hits = options.most_hits,
-                             .threads = options.common.threads,
-                             .progress = progress};
-  std::vector<NamedHit> hits;
-  for (const TakeHit& hit : query.fuzzy ? SearchFuzzilyIn(query, takes, options, coverage)
-                                        : SearchIn(query, takes, search, coverage)) {
-    hits.push_back({index, query.motion_template.name, takes.batch.takes[hit.take].path, hit});
-  }
-  return hits;
-}
+// The queries that share the features of one set at one rate, by index; those with keyframes of
+// their own, and those that know what sets their class off: rivals are searched together.
+struct QueryGroup {
+  FeatureKey key;
+  std::vector<std::size_t> queries;
+  std::vector<std::size_t> preselected;
+  std::vector<std::size_t> rivals;
+};
 
-// Templates that know what sets their class off are searched together, as they are rivals.
-std::vector<NamedHit> SearchTogether(std::span<const Query> queries,
-                                     std::span<const std::size_t> indices, const TakeBatch& batch,
-                                     const SearchCommandOptions& options,
-                                     const ProgressCallback& progress) {
-  std::vector<MotionTemplate> templates;
-  for (const std::size_t index : indices) templates.push_back(queries[index].motion_template);
-  const auto found = RankTakes(templates, batch.takes,
-                               {.tau = options.tau,
-                                .most_hits = options.most_hits,
-                                .threads = options.common.threads,
-                                .progress = progress});
-  std::vector<NamedHit> hits;
-  for (std::size_t t = 0; t < templates.size(); ++t) {
-    for (const TakeHit& hit : found[t]) {
-      hits.push_back({indices[t], templates[t].name, batch.takes[hit.take].path, hit});
+std::vector<QueryGroup> GroupQueries(std::span<const Query> queries) {
+  std::map<FeatureKey, QueryGroup> groups;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    QueryGroup& group = groups[KeyOf(queries[i])];
+    group.key = KeyOf(queries[i]);
+    group.queries.push_back(i);
+    if (queries[i].motion_template.contrast) {
+      group.rivals.push_back(i);
+    } else if (!queries[i].motion_template.keyframes.empty() && !queries[i].fuzzy) {
+      group.preselected.push_back(i);
     }
   }
-  return hits;
+  std::vector<QueryGroup> all;
+  all.reserve(groups.size());
+  for (auto& [key, group] : groups) all.push_back(std::move(group));
+  return all;
 }
 
-void Show(const std::vector<NamedHit>& hits, const TakeBatch& batch, const Coverage& coverage,
-          double elapsed_s, const SearchCommandOptions& options) {
+// What is known of the takes once they have been searched.
+struct SearchedTakes {
+  std::size_t takes = 0;
   std::int64_t frames = 0;
-  for (const TakeFeatures& take : batch.takes) frames += take.frame_count;
+  std::vector<std::filesystem::path> files;  // Where labels are to be compared with.
+  std::vector<std::pair<std::filesystem::path, Diagnostics>> diagnostics;
+  std::vector<TakeFailure> failures;
+};
+
+// All queries over all takes, some of these at a time.
+class Search {
+ public:
+  Search(std::span<const Query> queries, const SearchCommandOptions& options)
+      : queries_(queries),
+        options_(options),
+        groups_(GroupQueries(queries)),
+        progress_(MakeProgress(options.common)),
+        curves_(options.curve, queries.size()),
+        best_(queries.size()) {}
+
+  void Run(const TakeSource& source) {
+    for (const QueryGroup& group : groups_) {
+      TakeRequest request{.features = &queries_[group.queries.front()].features,
+                          .rate_hz = group.key.second,
+                          .with_poses = !group.rivals.empty(),
+                          .threads = options_.common.threads,
+                          .progress = progress_};
+      for (const std::size_t i : group.preselected) {
+        const MotionTemplate& each = queries_[i].motion_template;
+        request.keyframes.push_back({each.keyframes, each.matrix.column_count()});
+      }
+      request.only_preselected =
+          group.preselected.size() == group.queries.size() && options_.curve.empty();
+      const bool is_first = &group == &groups_.front();  // All read the same files.
+      auto failures = source.Visit(request, [&](const TakesAtHand& at_hand) {
+        if (is_first) Remember(at_hand);
+        SearchGroup(group, at_hand);
+      });
+      if (is_first) takes_.failures = std::move(failures);
+    }
+  }
+
+  // The best of all, those of rivals behind the others where they score the same.
+  [[nodiscard]] std::vector<NamedHit> Best() {
+    std::vector<std::size_t> order(queries_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) {
+      const Query& query = queries_[i];
+      return query.motion_template.contrast ? std::optional(KeyOf(query)) : std::nullopt;
+    });
+    std::vector<NamedHit> hits;
+    for (const std::size_t i : order) std::ranges::move(best_[i], std::back_inserter(hits));
+    KeepBest(hits);
+    return hits;
+  }
+
+  [[nodiscard]] const SearchedTakes& takes() const { return takes_; }
+  [[nodiscard]] const Coverage& coverage() const { return coverage_; }
+  [[nodiscard]] CurveFile& curves() { return curves_; }
+
+ private:
+  void Remember(const TakesAtHand& at_hand) {
+    takes_.takes += at_hand.takes.size();
+    for (const TakeView& take : at_hand.takes) {
+      takes_.frames += take.frame_count;
+      if (!options_.labels.empty()) takes_.files.push_back(*take.path);
+      if (take.diagnostics != nullptr && !take.diagnostics->empty()) {
+        takes_.diagnostics.emplace_back(*take.path, *take.diagnostics);
+      }
+    }
+  }
+
+  void SearchGroup(const QueryGroup& group, const TakesAtHand& at_hand) {
+    for (const std::size_t i : group.queries) {
+      if (!options_.curve.empty()) {
+        curves_.Add(queries_[i].motion_template, ThresholdOf(queries_[i].motion_template, options_),
+                    i, at_hand.takes);
+      }
+      if (queries_[i].motion_template.contrast) continue;
+      const auto place = std::ranges::find(group.preselected, i);
+      const bool is_preselected = place != group.preselected.end();
+      Keep(i, at_hand,
+           is_preselected
+               ? SearchStretches(i, at_hand, at_hand.stretches[place - group.preselected.begin()])
+               : SearchAll(i, at_hand));
+    }
+    if (group.rivals.empty()) return;
+    std::vector<MotionTemplate> templates;
+    templates.reserve(group.rivals.size());
+    for (const std::size_t i : group.rivals) templates.push_back(queries_[i].motion_template);
+    const auto found = RankTakes(templates, at_hand.takes,
+                                 {.tau = options_.tau,
+                                  .most_hits = options_.most_hits,
+                                  .threads = options_.common.threads,
+                                  .progress = ProgressOfSearch()});
+    for (std::size_t t = 0; t < found.size(); ++t) Keep(group.rivals[t], at_hand, found[t]);
+  }
+
+  std::vector<TakeHit> SearchAll(std::size_t i, const TakesAtHand& at_hand) {
+    coverage_.all += at_hand.columns;
+    coverage_.searched += at_hand.columns;
+    if (queries_[i].fuzzy) {
+      return SearchTakes(*queries_[i].fuzzy, at_hand.takes,
+                         {.faults = options_.faults, .most_hits = options_.most_hits});
+    }
+    return SearchTakes(Quantize(queries_[i].motion_template), at_hand.takes, OptionsOf(i));
+  }
+
+  std::vector<TakeHit> SearchStretches(std::size_t i, const TakesAtHand& at_hand,
+                                       std::span<const Stretch> stretches) {
+    coverage_.all += at_hand.columns;
+    coverage_.searched += CountColumns(stretches);
+    return SearchTakes(Quantize(queries_[i].motion_template), at_hand.takes, stretches,
+                       OptionsOf(i));
+  }
+
+  [[nodiscard]] SearchOptions OptionsOf(std::size_t i) const {
+    return {.tau = ThresholdOf(queries_[i].motion_template, options_),
+            .most_hits = options_.most_hits,
+            .threads = options_.common.threads,
+            .progress = ProgressOfSearch()};
+  }
+
+  // A library's takes are counted as they come.
+  [[nodiscard]] ProgressCallback ProgressOfSearch() const {
+    return options_.library.empty() ? progress_ : ProgressCallback();
+  }
+
+  void Keep(std::size_t i, const TakesAtHand& at_hand, const std::vector<TakeHit>& found) {
+    for (const TakeHit& hit : found) {
+      best_[i].push_back({i, queries_[i].motion_template.name, *at_hand.takes[hit.take].path, hit});
+    }
+    KeepBest(best_[i]);
+  }
+
+  // By score; of equals those that came first.
+  void KeepBest(std::vector<NamedHit>& hits) const {
+    std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.score; });
+    if (hits.size() > options_.most_hits) hits.resize(options_.most_hits);
+  }
+
+  std::span<const Query> queries_;
+  const SearchCommandOptions& options_;
+  std::vector<QueryGroup> groups_;
+  ProgressCallback progress_;
+  CurveFile curves_;
+  std::vector<std::vector<NamedHit>> best_;  // [query]
+  SearchedTakes takes_;
+  Coverage coverage_;
+};
+
+void Show(const std::vector<NamedHit>& hits, const SearchedTakes& takes, const Coverage& coverage,
+          double elapsed_s, const SearchCommandOptions& options) {
   if (options.Format() == "json") {
-    Json json = HitsToJson(hits, batch.failures, frames, elapsed_s);
+    Json json = HitsToJson(hits, takes.failures, takes.frames, elapsed_s);
     if (options.keyframes != "none") json["searched_share"] = coverage.share();
     PrintJson(json);
     return;
@@ -279,11 +387,11 @@ void Show(const std::vector<NamedHit>& hits, const TakeBatch& batch, const Cover
   } else if (!hits.empty()) {
     Print(HitsToText(hits, options.templates.size() > 1));
   }
-  PrintNote(
-      options.common,
-      fmt::format("{} in {} frames of {}, {:.2f} s", FormatCount(std::ssize(hits), "hit", "hits"),
-                  frames, FormatCount(std::ssize(batch.takes), "recording", "recordings"),
-                  elapsed_s));
+  PrintNote(options.common, fmt::format("{} in {} frames of {}, {:.2f} s",
+                                        FormatCount(std::ssize(hits), "hit", "hits"), takes.frames,
+                                        FormatCount(static_cast<std::int64_t>(takes.takes),
+                                                    "recording", "recordings"),
+                                        elapsed_s));
   if (coverage.searched < coverage.all) {
     PrintNote(options.common,
               fmt::format("keyframes left {:.1f} % of the columns to search; motion that does not "
@@ -292,51 +400,14 @@ void Show(const std::vector<NamedHit>& hits, const TakeBatch& batch, const Cover
   }
 }
 
-void WriteCurve(std::span<const Query> queries, const std::map<FeatureKey, SearchedTakes>& batches,
-                const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels,
-                const SearchCommandOptions& options) {
-  std::vector<SearchedTemplate> searched;
-  for (const Query& query : queries) {
-    const MotionTemplate& motion_template = query.motion_template;
-    searched.push_back({&motion_template,
-                        &batches.at(KeyOf(query)).batch,
-                        ThresholdOf(motion_template, options),
-                        {}});
+TakeSource SourceOf(const SearchCommandOptions& options) {
+  if (!options.library.empty()) {
+    return {options.library, options.filter, static_cast<std::int64_t>(options.memory_bytes)};
   }
-  for (const NamedHit& named : hits) searched[named.query].hits.push_back(named.hit);
-  if (IsPicture(options.curve)) {
-    DrawCurves(searched, labels, options.curve, options.common.overwrite());
-  } else {
-    WriteFile(options.curve, CurveTable(*searched.front().motion_template, *searched.front().batch),
-              options.common.overwrite());
-  }
+  std::vector<TakeStretch> stretches;
+  for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
+  return {std::move(stretches), options.common.load};
 }
-
-// Where takes come from: files that are read anew, or a library that has their features.
-class TakeSource {
- public:
-  explicit TakeSource(const SearchCommandOptions& options) : options_(options) {
-    if (!options.library.empty()) {
-      library_.emplace(options.library);
-      return;
-    }
-    for (auto& file : FindMotionFiles(options.paths)) {
-      stretches_.push_back({.file = std::move(file)});
-    }
-  }
-
-  [[nodiscard]] TakeBatch Load(const FeatureSet& features, double rate_hz, bool with_poses,
-                               const ProgressCallback& progress) const {
-    if (library_) return library_->Load(features, rate_hz, options_.filter, with_poses);
-    return LoadManyTakeFeatures(stretches_, features, rate_hz, options_.common.load,
-                                options_.common.threads, progress, {.poses = with_poses});
-  }
-
- private:
-  const SearchCommandOptions& options_;
-  std::optional<TakeLibrary> library_;
-  std::vector<TakeStretch> stretches_;
-};
 
 int Run(const SearchCommandOptions& options) {
   const Stopwatch watch;
@@ -346,49 +417,21 @@ int Run(const SearchCommandOptions& options) {
   for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
   std::vector<SegmentLabel> labels;
   if (!options.labels.empty()) labels = ReadSegmentLabels(options.labels);
-  const TakeSource source(options);
+  const TakeSource source = SourceOf(options);
 
-  const ProgressCallback progress = MakeProgress(options.common);
-  std::map<FeatureKey, SearchedTakes> batches;
-  std::map<FeatureKey, std::vector<std::size_t>> together;  // Indices of queries.
-  Coverage coverage;
-  std::vector<NamedHit> hits;
-  const auto append = [&hits](std::vector<NamedHit> found) {
-    hits.insert(hits.end(), std::make_move_iterator(found.begin()),
-                std::make_move_iterator(found.end()));
-  };
-  const bool with_poses = std::ranges::any_of(
-      queries, [](const Query& query) { return query.motion_template.contrast.has_value(); });
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    const Query& query = queries[i];
-    const FeatureKey key = KeyOf(query);
-    const auto [entry, is_new] = batches.try_emplace(key);
-    SearchedTakes& takes = entry->second;
-    if (is_new) {
-      takes.batch = source.Load(query.features, key.second, with_poses, progress);
-    }
-    if (query.motion_template.contrast) {
-      together[key].push_back(i);
-    } else {
-      append(SearchOne(queries, i, takes, options, progress, coverage));
-    }
+  Search search(queries, options);
+  search.Run(source);
+  const std::vector<NamedHit> hits = search.Best();
+  const SearchedTakes& takes = search.takes();
+  for (const auto& failure : takes.failures) PrintError(failure.error.what());
+  if (takes.takes == 0) return kCouldNot;
+  for (const auto& [file, diagnostics] : takes.diagnostics) {
+    PrintDiagnostics(options.common, file, diagnostics);
   }
-  for (const auto& [key, indices] : together) {
-    append(SearchTogether(queries, indices, batches.at(key).batch, options, progress));
-  }
-  std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.score; });
-  if (hits.size() > options.most_hits) hits.resize(options.most_hits);
-
-  const TakeBatch& batch = batches.begin()->second.batch;  // All read the same files.
-  for (const auto& failure : batch.failures) PrintError(failure.error.what());
-  if (batch.takes.empty()) return kCouldNot;
-  for (const TakeFeatures& take : batch.takes) {
-    PrintDiagnostics(options.common, take.path, take.diagnostics);
-  }
-  if (!options.labels.empty()) CheckLabels(labels, batch, options.labels);
-  if (!options.curve.empty()) WriteCurve(queries, batches, hits, labels, options);
-  Show(hits, batch, coverage, watch.seconds(), options);
-  return batch.failures.empty() ? kDone : kPartFailed;
+  if (!options.labels.empty()) CheckLabels(labels, takes.files, options.labels);
+  if (!options.curve.empty()) search.curves().Write(hits, labels, options.common.overwrite());
+  Show(hits, takes, search.coverage(), watch.seconds(), options);
+  return takes.failures.empty() ? kDone : kPartFailed;
 }
 
 // What a fuzzy search does not know cannot be asked of it.
@@ -431,6 +474,7 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   for (CLI::Option* filter : AddTakeFilterOptions(*command, options->filter)) {
     filter->needs(library);
   }
+  AddMemoryOption(*command, options->memory_bytes)->needs(library);
   command
       ->add_option("--tau", options->tau,
                    "Largest cost of a hit (default: the template's own, else 0.06); 1 lists all")

@@ -1,39 +1,54 @@
 // The cost curves that `search --curve` writes: a table of one template, a picture of several.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "cli/search_output.h"
 #include "kinebase/core/output_file.h"
 #include "kinebase/library/annotation_file.h"
 #include "kinebase/library/take_search.h"
+#include "kinebase/pictures/delta_picture.h"
 
 namespace kinebase::cli {
-
-// A template, what it was looked for in, and what was found.
-struct SearchedTemplate {
-  const MotionTemplate* motion_template = nullptr;
-  const TakeBatch* batch = nullptr;
-  double tau = 0;
-  std::vector<TakeHit> hits;
-};
 
 // By its extension; everything else is a table.
 [[nodiscard]] bool IsPicture(const std::filesystem::path& path);
 
-// file,column,frame,delta,start_frame
-[[nodiscard]] std::string CurveTable(const MotionTemplate& motion_template, const TakeBatch& batch);
+// Takes the curves of takes while these are at hand, and writes all of them in the end.
+class CurveFile {
+ public:
+  CurveFile(std::filesystem::path path, std::size_t templates)
+      : path_(std::move(path)), templates_(templates) {}
 
-// templates  All searched the same recordings.
-// labels     May be empty; those of other recordings are passed over.
-// Errors     Those of DrawDeltaCurves.
-void DrawCurves(std::span<const SearchedTemplate> templates, std::span<const SegmentLabel> labels,
-                const std::filesystem::path& path, Overwrite overwrite);
+  // tau    Of the template's hits.
+  // which  Its index among all; a table has one.
+  void Add(const MotionTemplate& motion_template, double tau, std::size_t which,
+           std::span<const TakeView> takes);
+
+  // labels  May be empty; those of other recordings are passed over.
+  // Errors  Those of DrawDeltaCurves.
+  void Write(const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels,
+             Overwrite overwrite);
+
+ private:
+  DeltaPanel& PanelOf(const TakeView& take);
+
+  std::filesystem::path path_;
+  std::size_t templates_;
+  std::string table_;
+  std::vector<DeltaPanel> panels_;                   // A take each,
+  std::vector<std::filesystem::path> files_;         // its file,
+  std::map<std::filesystem::path, std::size_t> of_;  // and where it is among them.
+};
 
 // Errors  Mismatch: there are none for any of these recordings.
-void CheckLabels(std::span<const SegmentLabel> labels, const TakeBatch& batch,
+void CheckLabels(std::span<const SegmentLabel> labels,
+                 std::span<const std::filesystem::path> recordings,
                  const std::filesystem::path& file);
 
 }  // namespace kinebase::cli

@@ -24,7 +24,7 @@ constexpr std::int64_t kMarginDivisor = 20;
 
 using Candidates = std::vector<AnnotationCandidate>;
 
-void CheckFeatures(const QuantizedTemplate& motion_template, const FeatureMatrix& features) {
+void CheckFeatures(const QuantizedTemplate& motion_template, const FeatureView& features) {
   if (motion_template.feature_count == features.feature_count &&
       motion_template.rate_hz == features.rate_hz) {
     return;
@@ -119,13 +119,6 @@ void SettleBorders(Candidates& segments) {
   segments = std::move(settled);
 }
 
-// Below what other recordings cost at their best.
-std::optional<double> ThresholdBelow(std::vector<double> least) {
-  if (least.empty()) return std::nullopt;
-  std::ranges::sort(least);
-  return kShareOfFalseCost * least[std::min<std::size_t>(1, least.size() - 1)];
-}
-
 // Groups of features that a template asks for, as bits by `group_of`.
 std::uint64_t GroupsAskedFor(const QuantizedTemplate& motion_template,
                              std::span<const int> group_of) {
@@ -149,7 +142,7 @@ std::vector<int> GroupNumbers(const FeatureSet& features) {
 }
 
 // Columns become frames of the take's file, from 1.
-Candidates InFrames(Candidates candidates, const TakeFeatures& take) {
+Candidates InFrames(Candidates candidates, const TakeView& take) {
   for (AnnotationCandidate& candidate : candidates) {
     const FrameRange frames = internal::FramesOfHit(take, static_cast<int>(candidate.first),
                                                     static_cast<int>(candidate.last));
@@ -162,7 +155,7 @@ Candidates InFrames(Candidates candidates, const TakeFeatures& take) {
 }  // namespace
 
 std::vector<AnnotationCandidate> FindCandidates(const AnnotationTemplate& motion_template,
-                                                const FeatureMatrix& features) {
+                                                const FeatureView& features) {
   CheckFeatures(motion_template.quantized, features);
   const DeltaCurve curve = ComputeDelta(motion_template.quantized, features.columns);
   Candidates candidates;
@@ -179,7 +172,7 @@ std::vector<AnnotationCandidate> FindCandidates(const AnnotationTemplate& motion
 }
 
 std::vector<AnnotationCandidate> FindCandidates(const AnnotationTemplate& motion_template,
-                                                const TakeFeatures& take) {
+                                                const TakeView& take) {
   return InFrames(FindCandidates(motion_template, take.features), take);
 }
 
@@ -214,8 +207,8 @@ std::vector<AnnotationCandidate> FindCandidates(std::span<const MotionTemplate> 
 
 std::vector<AnnotationCandidate> FindCandidates(std::span<const MotionTemplate> templates,
                                                 std::span<const int> classes,
-                                                const TakeFeatures& take) {
-  return InFrames(FindCandidates(templates, classes, {&take.features, &take.poses}), take);
+                                                const TakeView& take) {
+  return InFrames(FindCandidates(templates, classes, {take.features, take.poses}), take);
 }
 
 std::vector<AnnotationCandidate> ChooseSegments(const std::vector<AnnotationCandidate>& candidates,
@@ -305,9 +298,9 @@ std::vector<int> TracksByBodyPart(std::span<const AnnotationTemplate> templates,
   return tracks;
 }
 
-std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_template,
-                                              std::span<const RecordingStreams> background,
-                                              const RankOptions& ingredients) {
+std::vector<double> LeastCosts(const MotionTemplate& motion_template,
+                               std::span<const RecordingStreams> background,
+                               const RankOptions& ingredients) {
   RankOptions options = ingredients;
   options.tau = std::numeric_limits<double>::infinity();
   options.rivals = false;
@@ -320,7 +313,19 @@ std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_templ
     entry->second = std::min(entry->second, ranked.hit.cost);
   }
   const auto costs = std::views::values(least);
-  return ThresholdBelow({costs.begin(), costs.end()});
+  return {costs.begin(), costs.end()};
+}
+
+std::optional<double> ThresholdBelow(std::vector<double> least_costs) {
+  if (least_costs.empty()) return std::nullopt;
+  std::ranges::sort(least_costs);
+  return kShareOfFalseCost * least_costs[std::min<std::size_t>(1, least_costs.size() - 1)];
+}
+
+std::optional<double> ThresholdFromBackground(const MotionTemplate& motion_template,
+                                              std::span<const RecordingStreams> background,
+                                              const RankOptions& ingredients) {
+  return ThresholdBelow(LeastCosts(motion_template, background, ingredients));
 }
 
 }  // namespace kinebase

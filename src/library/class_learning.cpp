@@ -58,7 +58,7 @@ std::set<std::string> NamesOf(std::span<const MotionTemplate> templates) {
 std::vector<RecordingStreams> RecordingsOf(std::span<const LabelledClip* const> clips) {
   std::vector<RecordingStreams> recordings;
   for (const LabelledClip* clip : clips) {
-    recordings.push_back({.features = &clip->take.features, .poses = &clip->take.poses});
+    recordings.push_back({.features = clip->take.features, .poses = &clip->take.poses});
   }
   return recordings;
 }

@@ -64,7 +64,7 @@ Stream MakeStream(const EvaluationData& data, const Fold& fold) {
   Stream stream;
   const auto add = [&](const TakeFeatures& take, const LabelledClip* clip) {
     stream.takes.push_back(&take);
-    stream.recordings.push_back({.features = &take.features, .poses = &take.poses});
+    stream.recordings.push_back({.features = take.features, .poses = &take.poses});
     stream.clips.push_back(clip);
   };
   for (const std::size_t i : fold.test) add(data.clips[i].take, &data.clips[i]);

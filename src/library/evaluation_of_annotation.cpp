@@ -45,7 +45,7 @@ Parts PartsFor(const EvaluationData& data, const std::string& actor, std::size_t
   for (std::size_t i = 0; i < data.distractors.size(); ++i) {
     const TakeFeatures& take = data.distractors[i];
     if (i % 2 == half) {
-      parts.unlabelled.push_back({&take.features, &take.poses});
+      parts.unlabelled.push_back({take.features, &take.poses});
     } else {
       parts.fillers.push_back(take.features);
       parts.filler_poses.push_back(&take.poses);
@@ -62,7 +62,7 @@ JudgedRecording Annotate(const LongTake& take, const PoseStream& poses,
     judged.truth.push_back({segment.motion_class, segment.first, segment.last});
   }
   const auto candidates =
-      FindCandidates(templates, classes, {&take.features, &poses}, method.Ranking());
+      FindCandidates(templates, classes, {take.features, &poses}, method.Ranking());
   for (const AnnotationCandidate& segment : ChooseSegments(candidates)) {
     judged.found.push_back({segment.motion_class, segment.first, segment.last});
   }
@@ -76,7 +76,7 @@ void ChooseThresholds(const Parts& parts, const RankOptions& ranking,
     std::vector<RecordingStreams> background = parts.unlabelled;
     for (const LabelledClip* clip : parts.train) {
       if (clip->class_name == each.name) continue;
-      background.push_back({&clip->take.features, &clip->take.poses});
+      background.push_back({clip->take.features, &clip->take.poses});
     }
     const auto tau = ThresholdFromBackground(each, background, ranking);
     if (tau) each.tau = tau;

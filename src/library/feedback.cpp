@@ -25,7 +25,7 @@ FrameRange FramesOf(const TemplateClip& clip, std::int64_t frames_of_take) {
   return {clip.first_frame, clip.last_frame};
 }
 
-RecordingStreams StreamsOf(const TakeFeatures& take) { return {&take.features, &take.poses}; }
+RecordingStreams StreamsOf(const TakeFeatures& take) { return {take.features, &take.poses}; }
 
 std::vector<RecordingStreams> StreamsOf(const Takes& takes) {
   std::vector<RecordingStreams> streams;
@@ -125,7 +125,7 @@ std::optional<double> CostOf(const MotionTemplate& motion_template, const TakeFe
     const auto begin = take.poses.values.begin() + std::ptrdiff_t{first} * kPoseValues;
     poses.values = {begin, begin + std::ptrdiff_t{count} * kPoseValues};
   }
-  const RecordingStreams recording{&features, &poses};
+  const RecordingStreams recording{features, &poses};
   const auto ends = RankHits(std::span(&motion_template, 1), std::span(&recording, 1),
                              {.rivals = false,
                               .every_end = true,

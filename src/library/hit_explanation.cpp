@@ -90,7 +90,7 @@ HitExplanation ExplainRankedHit(std::span<const MotionTemplate> templates, const
                                 std::optional<std::int64_t> last_frame) {
   CheckRivals(templates);
   const MotionTemplate& motion_template = templates.front();
-  const RecordingStreams recording{.features = &take.features, .poses = &take.poses};
+  const RecordingStreams recording{.features = take.features, .poses = &take.poses};
   const int last =
       last_frame ? ColumnThatEndsWith(*last_frame, take) : BestEnd(templates, recording, take);
   const std::optional<RankedHit> ranked = RankEnd(templates, 0, recording, last);

@@ -53,7 +53,7 @@ void FindLookalikes(std::span<const LabelledClip* const> clips,
   std::vector<RecordingStreams> recordings;
   recordings.reserve(clips.size() + unlabelled.size());
   for (const LabelledClip* clip : clips) {
-    recordings.push_back({.features = &clip->take.features, .poses = &clip->take.poses});
+    recordings.push_back({.features = clip->take.features, .poses = &clip->take.poses});
   }
   recordings.insert(recordings.end(), unlabelled.begin(), unlabelled.end());
   const auto hits = RankHits(templates, recordings,
@@ -71,7 +71,7 @@ void FindLookalikes(std::span<const LabelledClip* const> clips,
       if (found == kMostLookalikes) break;
       const auto i = static_cast<std::size_t>(ranked.hit.recording);
       if (i < clips.size() && clips[i]->class_name == each.name) continue;
-      means.Add(TracePath(quantized, recordings[i].features->columns, ranked.hit.last),
+      means.Add(TracePath(quantized, recordings[i].features.columns, ranked.hit.last),
                 *recordings[i].poses);
       ++found;
     }

@@ -11,6 +11,7 @@
 #include "kinebase/core/error.h"
 #include "kinebase/features/feature_set.h"
 #include "kinebase/motion/standard_skeleton.h"
+#include "kinebase/search/run_lists.h"
 #include "library/checksum.h"
 
 static_assert(std::endian::native == std::endian::little, "segment files are read in place");
@@ -21,11 +22,13 @@ namespace {
 using internal::Checksum;
 
 constexpr std::string_view kMagic = "\x89KBSEG\r\n";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kFirstWithLists = 2;
 constexpr std::uint64_t kAlignment = 64;
 constexpr std::uint64_t kHeaderBytes = 64;
 constexpr std::uint64_t kRowBytes = 64;
 constexpr std::uint64_t kChecksumOffset = 56;
+constexpr std::uint64_t kListHeaderBytes = 16;
 constexpr std::uint64_t kPoseHeaderBytes = 32;
 constexpr std::uint64_t kPoseBytes = std::uint64_t{3} * kStandardJointCount * sizeof(std::uint16_t);
 
@@ -62,6 +65,14 @@ std::string FormatPoses(const PackedPoses& poses) {
   Put(bytes, poses.offset_cm.size() * sizeof(double), poses.step_cm);
   return bytes.append(reinterpret_cast<const char*>(poses.values.data()),
                       poses.values.size() * sizeof(std::uint16_t));
+}
+
+std::string FormatLists(const FeatureMatrix& features) {
+  const std::string lists = FormatRunLists(features);
+  std::string bytes(kListHeaderBytes, '\0');
+  Put(bytes, 0, std::uint64_t{lists.size()});
+  Put(bytes, sizeof(std::uint64_t), Checksum(lists));
+  return bytes.append(lists);
 }
 
 void CheckTakes(std::span<const SegmentTake> takes) {
@@ -102,6 +113,7 @@ std::string FormatSegment(std::span<const SegmentTake> takes, std::uint64_t feat
     const std::string_view words = AsBytes(take.features);
     Put(bytes, row + 24, Append(bytes, words));
     Put(bytes, row + 32, Checksum(words));
+    Put(bytes, row + 56, Append(bytes, FormatLists(take.features)));
     if (!take.poses) continue;
     const std::string poses = FormatPoses(*take.poses);
     Put(bytes, row + 40, Append(bytes, poses));
@@ -132,12 +144,12 @@ void SegmentReader::ReadHeader() {
   };
   if (!bytes_.starts_with(kMagic)) refuse("is no segment file of Kinebase", 0);
   if (bytes_.size() < kHeaderBytes) refuse("is cut off in its header", std::ssize(bytes_));
-  const auto version = Get<std::uint32_t>(bytes_, 8);
-  if (version > kVersion) {
+  version_ = Get<std::uint32_t>(bytes_, 8);
+  if (version_ > kVersion) {
     throw Error(ErrorCode::kMismatch,
                 fmt::format("is a segment of version {}; this Kinebase reads up to {}: use a newer "
                             "one",
-                            version, kVersion),
+                            version_, kVersion),
                 {.file = file_, .byte = 8});
   }
   const auto size = Get<std::uint64_t>(bytes_, 16);
@@ -170,15 +182,18 @@ void SegmentReader::ReadTable(std::uint64_t take_count) {
   rows_.reserve(take_count);
   for (std::uint64_t i = 0; i < take_count; ++i) {
     const std::uint64_t offset = kHeaderBytes + kRowBytes * i;
-    const TakeRow row{.content = Get<ContentKey>(bytes_, offset),
-                      .columns = Get<std::uint64_t>(bytes_, offset + 16),
-                      .words = Get<std::uint64_t>(bytes_, offset + 24),
-                      .words_checksum = Get<std::uint64_t>(bytes_, offset + 32),
-                      .poses = Get<std::uint64_t>(bytes_, offset + 40),
-                      .poses_checksum = Get<std::uint64_t>(bytes_, offset + 48)};
+    const TakeRow row{
+        .content = Get<ContentKey>(bytes_, offset),
+        .columns = Get<std::uint64_t>(bytes_, offset + 16),
+        .words = Get<std::uint64_t>(bytes_, offset + 24),
+        .words_checksum = Get<std::uint64_t>(bytes_, offset + 32),
+        .poses = Get<std::uint64_t>(bytes_, offset + 40),
+        .poses_checksum = Get<std::uint64_t>(bytes_, offset + 48),
+        .lists = version_ < kFirstWithLists ? 0 : Get<std::uint64_t>(bytes_, offset + 56)};
     const bool is_possible = row.columns <= std::numeric_limits<std::int32_t>::max() &&
                              fits(row.words, row.columns * sizeof(std::uint64_t)) &&
-                             (row.poses == 0 || fits(row.poses, PoseBlockBytes(row.columns)));
+                             (row.poses == 0 || fits(row.poses, PoseBlockBytes(row.columns))) &&
+                             (row.lists == 0 || fits(row.lists, kListHeaderBytes));
     if (!is_possible) {
       throw Error(ErrorCode::kMalformedFile,
                   fmt::format("take {} of its table lies outside of the file", i + 1),
@@ -218,6 +233,26 @@ PackedPoses SegmentReader::Poses(int take) const {
   poses.values.resize(row.columns * 3 * kStandardJointCount);
   std::memcpy(poses.values.data(), block.data() + kPoseHeaderBytes, kPoseBytes * row.columns);
   return poses;
+}
+
+std::string SegmentReader::RunListsOf(int take) const {
+  const TakeRow& row = Row(take);
+  if (row.lists == 0) return FormatRunLists({rate_hz_, feature_count_, Columns(take)});
+  const std::uint64_t first = row.lists + kListHeaderBytes;
+  const auto size = Get<std::uint64_t>(bytes_, row.lists);
+  if (size > bytes_.size() - first) {
+    throw Error(ErrorCode::kMalformedFile, fmt::format("cannot hold {} bytes of lists here", size),
+                {.file = file_, .byte = static_cast<std::int64_t>(row.lists)});
+  }
+  const auto checksum = Get<std::uint64_t>(bytes_, row.lists + sizeof(std::uint64_t));
+  return std::string(Block(first, size, checksum));
+}
+
+void SegmentReader::CheckRunLists(int take) const {
+  if (RunListsOf(take) == FormatRunLists({rate_hz_, feature_count_, Columns(take)})) return;
+  throw Error(ErrorCode::kMalformedFile,
+              fmt::format("has lists of take {} that are not those of its words", take + 1),
+              {.file = file_, .byte = static_cast<std::int64_t>(Row(take).lists)});
 }
 
 }  // namespace kinebase

@@ -7,12 +7,12 @@
 
 namespace kinebase::internal {
 
-inline FrameRange FramesOfHit(const TakeFeatures& take, int first_column, int last_column) {
+inline FrameRange FramesOfHit(const TakeView& take, int first_column, int last_column) {
   return FramesOfColumns(first_column, last_column, take.features.rate_hz, take.rate_hz,
                          take.frame_count);
 }
 
-inline TakeHit ToTakeHit(const Hit& hit, const TakeFeatures& take, std::size_t index) {
+inline TakeHit ToTakeHit(const Hit& hit, const TakeView& take, std::size_t index) {
   const FrameRange frames = FramesOfHit(take, hit.first, hit.last);
   return {.take = index,
           .first_frame = frames.first + 1,

@@ -119,6 +119,11 @@ bool TakeFilter::Accepts(const StoredTake& take) const {
   return Contains(actors, take.name.actor) && Contains(classes, take.name.class_name);
 }
 
+bool IsLibrary(const fs::path& folder) {
+  std::error_code unreachable;
+  return fs::is_regular_file(internal::CatalogueFile(folder), unreachable);
+}
+
 TakeLibrary::TakeLibrary(const fs::path& folder) : folder_(folder) {
   internal::CheckIsLibrary(folder);
   const Catalogue catalogue(folder, SqliteDatabase::Access::kRead);
@@ -188,6 +193,12 @@ std::span<const std::uint64_t> TakeLibrary::Columns(const StoredTake& take,
   }
 }
 
+int TakeLibrary::ColumnCount(const StoredTake& take, std::uint64_t feature_set_hash,
+                             double rate_hz) const {
+  const Location location = Find(take, feature_set_hash, rate_hz);
+  return location.segment->ColumnCount(location.slot);
+}
+
 JointTrajectories TakeLibrary::Poses(const StoredTake& take, std::uint64_t feature_set_hash,
                                      double rate_hz) const {
   const Location location = Find(take, feature_set_hash, rate_hz);
@@ -202,9 +213,37 @@ JointTrajectories TakeLibrary::Poses(const StoredTake& take, std::uint64_t featu
   }
 }
 
+std::string TakeLibrary::RunListsOf(const StoredTake& take, std::uint64_t feature_set_hash,
+                                    double rate_hz) const {
+  const Location location = Find(take, feature_set_hash, rate_hz);
+  try {
+    return location.segment->RunListsOf(location.slot);
+  } catch (const Error& error) {
+    ThrowUnusable(error);
+  }
+}
+
+void TakeLibrary::ReleaseMemory(std::span<const StoredTake* const> takes) const {
+  std::set<std::int64_t> numbers;
+  for (const StoredTake* take : takes) {
+    for (const StoredFeatures& features : take->features) numbers.insert(features.segment);
+  }
+  for (const std::int64_t number : numbers) {
+    const auto found = segments_.find(number);
+    if (found == segments_.end()) continue;
+    if (const auto* file = std::get_if<SegmentFile>(&found->second)) file->ReleaseMemory();
+  }
+}
+
 void TakeLibrary::Check(const StoredTake& take) const {
   for (const StoredFeatures& features : take.features) {
     (void)Columns(take, features.feature_set_hash, features.rate_hz);
+    const Location location = Find(take, features.feature_set_hash, features.rate_hz);
+    try {
+      location.segment->CheckRunLists(location.slot);
+    } catch (const Error& error) {
+      ThrowUnusable(error);
+    }
     if (features.has_poses) (void)Poses(take, features.feature_set_hash, features.rate_hz);
   }
 }
@@ -224,17 +263,23 @@ TakeFeatures TakeLibrary::LoadTake(const StoredTake& take, const FeatureSet& fea
   return loaded;
 }
 
-TakeBatch TakeLibrary::Load(const FeatureSet& features, double rate_hz, const TakeFilter& filter,
-                            bool with_poses) const {
+std::vector<const StoredTake*> TakeLibrary::TakesWith(const FeatureSet& features, double rate_hz,
+                                                      const TakeFilter& filter,
+                                                      bool with_poses) const {
   if (takes_.empty()) {
     throw Error(ErrorCode::kNotFound, "holds no takes; kinebase import adds some",
                 {.file = folder_});
   }
   CheckFilter(filter);
-  const std::vector<const StoredTake*> chosen = Choose(takes_, filter, folder_);
+  std::vector<const StoredTake*> chosen = Choose(takes_, filter, folder_);
   CheckAnyHas(chosen, features, rate_hz, with_poses, folder_);
+  return chosen;
+}
+
+TakeBatch TakeLibrary::Load(const FeatureSet& features, double rate_hz, const TakeFilter& filter,
+                            bool with_poses) const {
   TakeBatch batch;
-  for (const StoredTake* take : chosen) {
+  for (const StoredTake* take : TakesWith(features, rate_hz, filter, with_poses)) {
     try {
       batch.takes.push_back(LoadTake(*take, features, rate_hz, with_poses));
     } catch (const Error& error) {

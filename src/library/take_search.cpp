@@ -8,15 +8,14 @@
 namespace kinebase {
 namespace {
 
-// A word a column: little beside the scan itself.
-std::vector<FeatureMatrix> FeaturesOf(std::span<const TakeFeatures> takes) {
-  std::vector<FeatureMatrix> recordings;
+std::vector<FeatureView> FeaturesOf(std::span<const TakeView> takes) {
+  std::vector<FeatureView> recordings;
   recordings.reserve(takes.size());
-  for (const TakeFeatures& take : takes) recordings.push_back(take.features);
+  for (const TakeView& take : takes) recordings.push_back(take.features);
   return recordings;
 }
 
-std::vector<TakeHit> ToTakeHits(std::span<const Hit> hits, std::span<const TakeFeatures> takes) {
+std::vector<TakeHit> ToTakeHits(std::span<const Hit> hits, std::span<const TakeView> takes) {
   std::vector<TakeHit> take_hits;
   take_hits.reserve(hits.size());
   for (const Hit& hit : hits) {
@@ -29,24 +28,23 @@ std::vector<TakeHit> ToTakeHits(std::span<const Hit> hits, std::span<const TakeF
 }  // namespace
 
 std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
-                                 std::span<const TakeFeatures> takes,
-                                 const SearchOptions& options) {
+                                 std::span<const TakeView> takes, const SearchOptions& options) {
   return ToTakeHits(SearchTemplate(motion_template, FeaturesOf(takes), options), takes);
 }
 
 std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
-                                 std::span<const TakeFeatures> takes,
+                                 std::span<const TakeView> takes,
                                  std::span<const Stretch> stretches, const SearchOptions& options) {
   return ToTakeHits(SearchTemplate(motion_template, FeaturesOf(takes), stretches, options), takes);
 }
 
-std::vector<TakeHit> SearchTakes(const FuzzyQuery& query, std::span<const TakeFeatures> takes,
+std::vector<TakeHit> SearchTakes(const FuzzyQuery& query, std::span<const TakeView> takes,
                                  const FuzzyOptions& options) {
   return ToTakeHits(SearchFuzzy(query, FeaturesOf(takes), options), takes);
 }
 
-std::vector<double> CostCurve(const MotionTemplate& motion_template, const TakeFeatures& take) {
-  const RecordingStreams recording{.features = &take.features, .poses = &take.poses};
+std::vector<double> CostCurve(const MotionTemplate& motion_template, const TakeView& take) {
+  const RecordingStreams recording{.features = take.features, .poses = take.poses};
   const auto ranked = RankHits(std::span(&motion_template, 1), std::span(&recording, 1),
                                {.rivals = false,
                                 .every_end = true,
@@ -59,16 +57,16 @@ std::vector<double> CostCurve(const MotionTemplate& motion_template, const TakeF
   return cost;
 }
 
-KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes, const FeatureSet& features) {
+KeyframeIndex IndexTakes(std::span<const TakeView> takes, const FeatureSet& features) {
   return KeyframeIndex(FeaturesOf(takes), features.Groups());
 }
 
 std::vector<std::vector<TakeHit>> RankTakes(std::span<const MotionTemplate> templates,
-                                            std::span<const TakeFeatures> takes,
+                                            std::span<const TakeView> takes,
                                             const RankTakesOptions& options) {
   std::vector<RecordingStreams> recordings;
   recordings.reserve(takes.size());
-  for (const TakeFeatures& take : takes) recordings.push_back({&take.features, &take.poses});
+  for (const TakeView& take : takes) recordings.push_back({take.features, take.poses});
   const auto ranked = RankHits(templates, recordings,
                                {.most_hits = std::numeric_limits<std::size_t>::max(),
                                 .threads = options.threads,

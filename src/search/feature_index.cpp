@@ -20,10 +20,10 @@ bool FeaturePattern::Admits(std::uint64_t features) const {
   return std::popcount((features ^ ones) & tested) <= misses;
 }
 
-FeatureIndex::FeatureIndex(std::span<const FeatureMatrix> recordings, std::uint64_t features)
+FeatureIndex::FeatureIndex(std::span<const FeatureView> recordings, std::uint64_t features)
     : features_(features) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const std::vector<std::uint64_t>& columns = recordings[i].columns;
+    const std::span<const std::uint64_t> columns = recordings[i].columns;
     for (std::size_t first = 0; first < columns.size();) {
       const std::uint64_t word = columns[first] & features;
       std::size_t end = first + 1;

@@ -203,7 +203,7 @@ FuzzyQuery MakeFuzzyQuery(const QuantizedTemplate& motion_template, std::uint64_
   return query;
 }
 
-std::vector<Hit> SearchFuzzy(const FuzzyQuery& query, std::span<const FeatureMatrix> recordings,
+std::vector<Hit> SearchFuzzy(const FuzzyQuery& query, std::span<const FeatureView> recordings,
                              const FuzzyOptions& options) {
   CheckQuery(query, options);
   const FeatureIndex index(recordings, query.features);
@@ -229,6 +229,11 @@ std::vector<Hit> SearchFuzzy(const FuzzyQuery& query, std::span<const FeatureMat
     begin = end;
   }
   return BestHits(std::move(hits), options.most_hits);
+}
+
+std::vector<Hit> SearchFuzzy(const FuzzyQuery& query, std::span<const FeatureMatrix> recordings,
+                             const FuzzyOptions& options) {
+  return SearchFuzzy(query, ViewsOf(recordings), options);
 }
 
 }  // namespace kinebase

@@ -103,31 +103,45 @@ class Preselection {
   std::vector<GapRange> gaps_;
 };
 
+bool IsOfGroup(const Keyframe& keyframe, std::uint64_t features) {
+  return (keyframe.tested & ~features) == 0;
+}
+
+[[noreturn]] void ThrowSeveralGroups(const Keyframe& keyframe) {
+  throw Error(ErrorCode::kInvalidArgument,
+              fmt::format("the keyframe in column {} tests features of several groups; make one "
+                          "for each group",
+                          keyframe.column));
+}
+
+void CheckKeyframes(std::span<const Keyframe> keyframes, int template_columns) {
+  std::string problem = ProblemOfKeyframes(keyframes, template_columns, kMaxFeatures);
+  if (keyframes.empty()) problem = "no keyframes; choose some, or search without";
+  if (!problem.empty()) throw Error(ErrorCode::kInvalidArgument, problem);
+}
+
+FeaturePattern PatternOf(const Keyframe& keyframe) {
+  return {.tested = keyframe.tested, .ones = keyframe.ones, .misses = keyframe.misses};
+}
+
 }  // namespace
 
-KeyframeIndex::KeyframeIndex(std::span<const FeatureMatrix> recordings,
+KeyframeIndex::KeyframeIndex(std::span<const FeatureView> recordings,
                              std::span<const FeatureGroup> groups) {
   column_counts_.reserve(recordings.size());
   indices_.reserve(groups.size());
-  for (const FeatureMatrix& recording : recordings) {
+  for (const FeatureView& recording : recordings) {
     column_counts_.push_back(recording.column_count());
   }
   for (const FeatureGroup& group : groups) indices_.emplace_back(recordings, group.features);
 }
 
 std::vector<std::vector<Stretch>> KeyframeIndex::Find(const Keyframe& keyframe) const {
-  const auto index = std::ranges::find_if(indices_, [&](const FeatureIndex& group) {
-    return (keyframe.tested & ~group.features()) == 0;
-  });
-  if (index == indices_.end()) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("the keyframe in column {} tests features of several groups; make one "
-                            "for each group",
-                            keyframe.column));
-  }
+  const auto index = std::ranges::find_if(
+      indices_, [&](const FeatureIndex& group) { return IsOfGroup(keyframe, group.features()); });
+  if (index == indices_.end()) ThrowSeveralGroups(keyframe);
   std::vector<std::vector<Stretch>> by_recording(column_counts_.size());
-  for (const Stretch& run :
-       index->Find({.tested = keyframe.tested, .ones = keyframe.ones, .misses = keyframe.misses})) {
+  for (const Stretch& run : index->Find(PatternOf(keyframe))) {
     by_recording[static_cast<std::size_t>(run.recording)].push_back(run);
   }
   return by_recording;
@@ -135,10 +149,7 @@ std::vector<std::vector<Stretch>> KeyframeIndex::Find(const Keyframe& keyframe) 
 
 std::vector<Stretch> KeyframeIndex::Preselect(std::span<const Keyframe> keyframes,
                                               int template_columns) const {
-  std::string problem = ProblemOfKeyframes(keyframes, template_columns, kMaxFeatures);
-  if (keyframes.empty()) problem = "no keyframes; choose some, or search without";
-  if (!problem.empty()) throw Error(ErrorCode::kInvalidArgument, problem);
-
+  CheckKeyframes(keyframes, template_columns);
   std::vector<std::vector<std::vector<Stretch>>> found;  // [keyframe][recording]
   found.reserve(keyframes.size());
   for (const Keyframe& keyframe : keyframes) found.push_back(Find(keyframe));
@@ -150,6 +161,27 @@ std::vector<Stretch> KeyframeIndex::Preselect(std::span<const Keyframe> keyframe
     Preselection(keyframes, template_columns, static_cast<int>(i), column_counts_[i])
         .Select(here, selected);
   }
+  return selected;
+}
+
+std::vector<Stretch> Preselect(std::span<const Keyframe> keyframes, int template_columns,
+                               std::span<const FeatureGroup> groups, const RunLists& lists,
+                               int recording) {
+  CheckKeyframes(keyframes, template_columns);
+  std::vector<std::vector<Stretch>> found;  // [keyframe]
+  found.reserve(keyframes.size());
+  for (const Keyframe& keyframe : keyframes) {
+    const bool is_of_one = std::ranges::any_of(
+        groups, [&](const FeatureGroup& group) { return IsOfGroup(keyframe, group.features); });
+    if (!is_of_one) ThrowSeveralGroups(keyframe);
+  }
+  for (const Keyframe& keyframe : keyframes) {
+    found.push_back(lists.Find(PatternOf(keyframe), recording));
+    if (found.back().empty()) return {};
+  }
+  std::vector<Stretch> selected;
+  Preselection(keyframes, template_columns, recording, lists.column_count())
+      .Select(found, selected);
   return selected;
 }
 

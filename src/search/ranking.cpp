@@ -42,7 +42,7 @@ struct Searched {
   QuantizedTemplate quantized;
 };
 
-void CheckFeatures(const MotionTemplate& motion_template, const FeatureMatrix& features) {
+void CheckFeatures(const MotionTemplate& motion_template, const FeatureView& features) {
   if (features.feature_count == motion_template.matrix.feature_count &&
       features.rate_hz == motion_template.matrix.rate_hz) {
     return;
@@ -55,12 +55,12 @@ void CheckFeatures(const MotionTemplate& motion_template, const FeatureMatrix& f
 
 void CheckPoses(const MotionTemplate& motion_template, const RecordingStreams& recording) {
   const int poses = recording.poses == nullptr ? 0 : recording.poses->column_count();
-  if (poses == recording.features->column_count()) return;
+  if (poses == recording.features.column_count()) return;
   throw Error(
       ErrorCode::kMismatch,
       fmt::format("a recording has {} columns of features and {} poses; template '{}' needs "
                   "a pose for each: extract them too",
-                  recording.features->column_count(), poses, motion_template.name));
+                  recording.features.column_count(), poses, motion_template.name));
 }
 
 std::vector<Searched> Prepare(std::span<const MotionTemplate> templates,
@@ -69,7 +69,7 @@ std::vector<Searched> Prepare(std::span<const MotionTemplate> templates,
   for (const MotionTemplate& each : templates) {
     searched.push_back({&each, Quantize(each)});
     for (const RecordingStreams& recording : recordings) {
-      CheckFeatures(each, *recording.features);
+      CheckFeatures(each, recording.features);
       if (each.contrast && with_places) CheckPoses(each, recording);
     }
   }
@@ -168,7 +168,7 @@ class Ranker {
     std::vector<DeltaCurve> curves;
     curves.reserve(searched_.size());
     for (const Searched& each : searched_) {
-      curves.push_back(ComputeDelta(each.quantized, recording.features->columns));
+      curves.push_back(ComputeDelta(each.quantized, recording.features.columns));
     }
     return curves;
   }
@@ -203,7 +203,7 @@ class Ranker {
                     const RecordingStreams& recording, RankedHit& ranked) const {
     const bool has_lookalikes = options_.lookalikes && !model.lookalikes.empty();
     const std::vector<PathCell> path =
-        TracePath(quantized, recording.features->columns, ranked.hit.last);
+        TracePath(quantized, recording.features.columns, ranked.hit.last);
     double nearness = 0;
     for (const PathCell& cell : path) {
       const std::span<const float> pose = recording.poses->Column(cell.recording_column);

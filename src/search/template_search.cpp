@@ -16,6 +16,9 @@ using internal::Candidate;
 // Long recordings are cut, so that one alone still occupies all threads. What a piece computes
 // twice, two columns for each template column, is then 1 in 300 for a template of three seconds.
 constexpr std::size_t kColumnsOfAPiece = std::size_t{1} << 16;
+// Short ones are taken together: handing out a piece costs as much as scanning some hundred
+// columns.
+constexpr std::size_t kColumnsOfATurn = std::size_t{1} << 13;
 
 // Some columns of a stretch, in which paths may begin to their left.
 struct Piece {
@@ -25,9 +28,9 @@ struct Piece {
 };
 
 void CheckRecordings(const QuantizedTemplate& motion_template,
-                     std::span<const FeatureMatrix> recordings) {
+                     std::span<const FeatureView> recordings) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const FeatureMatrix& recording = recordings[i];
+    const FeatureView& recording = recordings[i];
     if (recording.feature_count != motion_template.feature_count) {
       throw Error(ErrorCode::kMismatch,
                   fmt::format("recording {} has {} features, the template {}; extract both with "
@@ -43,7 +46,7 @@ void CheckRecordings(const QuantizedTemplate& motion_template,
   }
 }
 
-void CheckStretches(std::span<const Stretch> stretches, std::span<const FeatureMatrix> recordings) {
+void CheckStretches(std::span<const Stretch> stretches, std::span<const FeatureView> recordings) {
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const Stretch& stretch = stretches[i];
     const bool exists = stretch.recording >= 0 && stretch.recording < std::ssize(recordings) &&
@@ -60,7 +63,7 @@ void CheckStretches(std::span<const Stretch> stretches, std::span<const FeatureM
   }
 }
 
-std::vector<Stretch> WholeRecordings(std::span<const FeatureMatrix> recordings) {
+std::vector<Stretch> WholeRecordings(std::span<const FeatureView> recordings) {
   std::vector<Stretch> stretches;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const int columns = recordings[i].column_count();
@@ -80,6 +83,21 @@ std::vector<Piece> CutIntoPieces(std::span<const Stretch> stretches) {
   return pieces;
 }
 
+// Where each turn of the work begins among the pieces, and the end of the last.
+std::vector<std::size_t> TurnsOf(std::span<const Piece> pieces) {
+  std::vector<std::size_t> turns;
+  std::size_t columns = kColumnsOfATurn;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (columns >= kColumnsOfATurn) {
+      turns.push_back(i);
+      columns = 0;
+    }
+    columns += pieces[i].end - pieces[i].begin;
+  }
+  turns.push_back(pieces.size());
+  return turns;
+}
+
 // A template ready to be scanned for, first roughly.
 struct Plans {
   internal::FilterPlan filter;
@@ -96,12 +114,12 @@ void ScanColumns(const internal::ScanPlan& plan, std::span<const std::uint64_t> 
   internal::AppendCandidates(delta, start, tau, begin, candidates);
 }
 
-std::vector<Candidate> ScanPiece(const Plans& plans, const FeatureMatrix& recording,
+std::vector<Candidate> ScanPiece(const Plans& plans, const FeatureView& recording,
                                  const Piece& piece, double tau) {
   const Stretch& stretch = piece.stretch;
-  const auto columns = std::span(recording.columns)
-                           .subspan(static_cast<std::size_t>(stretch.first),
-                                    static_cast<std::size_t>(stretch.last - stretch.first) + 1);
+  const auto columns =
+      recording.columns.subspan(static_cast<std::size_t>(stretch.first),
+                                static_cast<std::size_t>(stretch.last - stretch.first) + 1);
   std::vector<Candidate> candidates;
   if (plans.filter.rules_out()) {
     for (const internal::ColumnRun& run :
@@ -120,16 +138,20 @@ std::vector<Candidate> ScanPiece(const Plans& plans, const FeatureMatrix& record
 
 // stretches  Checked.
 std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
-                                 std::span<const FeatureMatrix> recordings,
+                                 std::span<const FeatureView> recordings,
                                  std::span<const Stretch> stretches, const SearchOptions& options) {
   const Plans plans{.filter = {motion_template, options.tau},
                     .scan = internal::ScanPlan(motion_template)};
   const std::vector<Piece> pieces = CutIntoPieces(stretches);
   std::vector<std::vector<Candidate>> candidates(pieces.size());
-  ParallelFor(pieces.size(), options.threads, "searching", options.progress, [&](std::size_t i) {
-    const Piece& piece = pieces[i];
-    candidates[i] = ScanPiece(plans, recordings[piece.stretch.recording], piece, options.tau);
-  });
+  const std::vector<std::size_t> turns = TurnsOf(pieces);
+  ParallelFor(
+      turns.size() - 1, options.threads, "searching", options.progress, [&](std::size_t turn) {
+        for (std::size_t i = turns[turn]; i < turns[turn + 1]; ++i) {
+          const Piece& piece = pieces[i];
+          candidates[i] = ScanPiece(plans, recordings[piece.stretch.recording], piece, options.tau);
+        }
+      });
 
   std::vector<Hit> hits;
   for (std::size_t i = 0; i < pieces.size();) {
@@ -138,6 +160,7 @@ std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
     for (; i < pieces.size() && pieces[i].stretch.recording == recording; ++i) {
       all.insert(all.end(), candidates[i].begin(), candidates[i].end());
     }
+    if (all.empty()) continue;
     const std::vector<Hit> found = internal::ExtractHits(std::move(all), recording);
     hits.insert(hits.end(), found.begin(), found.end());
   }
@@ -147,7 +170,7 @@ std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
 }  // namespace
 
 std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
-                                std::span<const FeatureMatrix> recordings,
+                                std::span<const FeatureView> recordings,
                                 const SearchOptions& options) {
   internal::CheckTau(options.tau);
   CheckRecordings(motion_template, recordings);
@@ -155,12 +178,24 @@ std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
 }
 
 std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
-                                std::span<const FeatureMatrix> recordings,
+                                std::span<const FeatureView> recordings,
                                 std::span<const Stretch> stretches, const SearchOptions& options) {
   internal::CheckTau(options.tau);
   CheckRecordings(motion_template, recordings);
   CheckStretches(stretches, recordings);
   return SearchStretches(motion_template, recordings, stretches, options);
+}
+
+std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                std::span<const FeatureMatrix> recordings,
+                                const SearchOptions& options) {
+  return SearchTemplate(motion_template, ViewsOf(recordings), options);
+}
+
+std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                std::span<const FeatureMatrix> recordings,
+                                std::span<const Stretch> stretches, const SearchOptions& options) {
+  return SearchTemplate(motion_template, ViewsOf(recordings), stretches, options);
 }
 
 }  // namespace kinebase

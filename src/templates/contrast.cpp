@@ -62,12 +62,12 @@ class Moments {
 
 void CheckPoses(const RecordingStreams& recording) {
   const int poses = recording.poses == nullptr ? 0 : recording.poses->column_count();
-  if (poses == recording.features->column_count()) return;
+  if (poses == recording.features.column_count()) return;
   throw Error(
       ErrorCode::kInvalidArgument,
       fmt::format("a recording with {} columns of features and {} poses; a contrast needs a "
                   "pose for each: extract them too",
-                  recording.features->column_count(), poses));
+                  recording.features.column_count(), poses));
 }
 
 PoseStatistics MeasurePoses(std::span<const RecordingStreams> labelled,
@@ -125,14 +125,14 @@ std::vector<Alignment> AlignAll(const MotionTemplate& motion_template,
                                 const Background& background) {
   std::vector<Alignment> alignments;
   for (const RecordingStreams& recording : recordings) {
-    if (recording.features->feature_count != motion_template.matrix.feature_count ||
+    if (recording.features.feature_count != motion_template.matrix.feature_count ||
         std::ssize(background.ones) != motion_template.matrix.feature_count) {
       throw Error(ErrorCode::kMismatch,
                   fmt::format("template '{}' has {} features, a performance {}, the background {}",
                               motion_template.name, motion_template.matrix.feature_count,
-                              recording.features->feature_count, background.ones.size()));
+                              recording.features.feature_count, background.ones.size()));
     }
-    alignments.push_back(Align(motion_template.matrix, ToTemplateMatrix(*recording.features),
+    alignments.push_back(Align(motion_template.matrix, ToTemplateMatrix(recording.features),
                                motion_template.learning));
   }
   return alignments;
@@ -149,7 +149,7 @@ std::vector<double> OnesOfColumns(const TemplateMatrix& matrix, const Background
     ones.insert(ones.end(), background.ones.begin(), background.ones.end());
   }
   for (std::size_t i = 0; i < counterexamples.size(); ++i) {
-    const TemplateMatrix warped = WarpToReference(ToTemplateMatrix(*counterexamples[i].features),
+    const TemplateMatrix warped = WarpToReference(ToTemplateMatrix(counterexamples[i].features),
                                                   alignments[i], matrix.column_count());
     for (std::size_t v = 0; v < ones.size(); ++v) ones[v] += warped.values[v];
   }
@@ -221,7 +221,7 @@ Background MeasureBackground(std::span<const RecordingStreams> labelled,
   Background background;
   double columns = 0;
   for (const RecordingStreams& recording : labelled) {
-    const FeatureMatrix& matrix = *recording.features;
+    const FeatureView& matrix = recording.features;
     if (background.ones.empty()) {
       background.ones.resize(static_cast<std::size_t>(matrix.feature_count));
     }

@@ -12,7 +12,7 @@ double TemplateMatrix::total_weight() const {
   return std::accumulate(weights.begin(), weights.end(), 0.0);
 }
 
-TemplateMatrix ToTemplateMatrix(const FeatureMatrix& features) {
+TemplateMatrix ToTemplateMatrix(const FeatureView& features) {
   TemplateMatrix matrix;
   matrix.rate_hz = features.rate_hz;
   matrix.feature_count = features.feature_count;

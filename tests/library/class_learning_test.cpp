@@ -115,7 +115,7 @@ TEST(ClassLearning, DoesNotFindClipsShorterThanHalfTheTemplate) {
   EXPECT_EQ(CountRight(learned.evidence.at("a").seen), 2);
   const auto hits =
       RankHits(learned.templates,
-               std::vector<RecordingStreams>{{&clips[2].take.features, &clips[2].take.poses}});
+               std::vector<RecordingStreams>{{clips[2].take.features, &clips[2].take.poses}});
   EXPECT_THAT(hits[0], IsEmpty());
 }
 
@@ -252,7 +252,7 @@ TEST(ClassLearning, KeepsThePosesOfWhatLooksLikeTheClass) {
   // The same features as "a", the hand elsewhere.
   LabelledClip like = Clip("a", "z");
   for (float& value : like.take.poses.values) value *= 2;
-  const std::vector<RecordingStreams> unlabelled(200, {&like.take.features, &like.take.poses});
+  const std::vector<RecordingStreams> unlabelled(200, {like.take.features, &like.take.poses});
   const auto templates = LearnClasses(pointers, TwoFeatures(), {.unlabelled = unlabelled});
   const PoseModel& places = templates[0].contrast->places;
   ASSERT_EQ(places.lookalikes.size(), places.mean.size());

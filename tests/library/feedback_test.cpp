@@ -111,8 +111,8 @@ TEST(UpdateTemplate, ChangesNothingButThresholdsIfNothingIsNew) {
   for (const bool with_contrast : {false, true}) {
     MotionTemplate before = TemplateFrom(kClips);
     if (with_contrast) {
-      const std::vector<RecordingStreams> clips = {{&kClips[0].features, &kClips[0].poses},
-                                                   {&kClips[1].features, &kClips[1].poses}};
+      const std::vector<RecordingStreams> clips = {{kClips[0].features, &kClips[0].poses},
+                                                   {kClips[1].features, &kClips[1].poses}};
       before.contrast = MeasureContrast(before, clips, MeasureBackground(clips));
       std::vector<float>& lookalikes = before.contrast->places.lookalikes;
       for (std::size_t i = 0; i < before.contrast->places.mean.size(); ++i) {
@@ -131,8 +131,8 @@ TEST(UpdateTemplate, ChangesNothingButThresholdsIfNothingIsNew) {
 
 TEST(UpdateTemplate, KeepsLookalikesInTheColumnsOfTheNewMatrix) {
   MotionTemplate before = TemplateFrom(kClips);
-  const std::vector<RecordingStreams> clips = {{&kClips[0].features, &kClips[0].poses},
-                                               {&kClips[1].features, &kClips[1].poses}};
+  const std::vector<RecordingStreams> clips = {{kClips[0].features, &kClips[0].poses},
+                                               {kClips[1].features, &kClips[1].poses}};
   before.contrast = MeasureContrast(before, clips, MeasureBackground(clips));
   // 1 where the first feature holds, 0 elsewhere.
   for (int column = 0; column < before.matrix.column_count(); ++column) {
@@ -153,8 +153,8 @@ TEST(UpdateTemplate, KeepsLookalikesInTheColumnsOfTheNewMatrix) {
 
 TEST(UpdateTemplate, SharpensAContrastByWrongHits) {
   MotionTemplate before = TemplateFrom(kClips);
-  const std::vector<RecordingStreams> clips = {{&kClips[0].features, &kClips[0].poses},
-                                               {&kClips[1].features, &kClips[1].poses}};
+  const std::vector<RecordingStreams> clips = {{kClips[0].features, &kClips[0].poses},
+                                               {kClips[1].features, &kClips[1].poses}};
   before.contrast = MeasureContrast(before, clips, MeasureBackground(clips));
   before.tau = 0.9;
   before.calibration = Calibration{.slope = 20, .offset = -18};

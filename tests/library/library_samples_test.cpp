@@ -10,6 +10,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/library/library_upkeep.h"
 #include "kinebase/library/take_library.h"
+#include "kinebase/search/run_lists.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
 
@@ -62,6 +63,9 @@ TEST_F(LibrarySample, OfVersion1IsRead) {
         EXPECT_EQ((columns[column] >> row) & 1U, features.rows[column][row + 1] == "1" ? 1U : 0U);
       }
     }
+    // It holds no lists: they are made of the words.
+    EXPECT_EQ(library.RunListsOf(take, stored.feature_set_hash, 30),
+              FormatRunLists({30, 39, columns}));
     const JointTrajectories poses = library.Poses(take, stored.feature_set_hash, 30);
     ASSERT_EQ(static_cast<std::size_t>(poses.frame_count()), columns.size());
     const CsvTable joints = Truth(take, "joints");

@@ -20,6 +20,7 @@ void ReadAll(const fs::path& path) {
   const SegmentFile file(path);
   for (int i = 0; i < file.reader().take_count(); ++i) {
     (void)file.reader().Columns(i);
+    (void)file.reader().RunListsOf(i);
     if (file.reader().HasPoses(i)) (void)file.reader().Poses(i);
   }
 }

@@ -11,6 +11,7 @@
 
 #include "kinebase/core/error.h"
 #include "kinebase/motion/standard_skeleton.h"
+#include "kinebase/search/run_lists.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
 
@@ -72,6 +73,7 @@ TEST(SegmentFile, GivesBackWhatWasStored) {
     EXPECT_EQ(segment.ColumnCount(i), take.features.column_count());
     EXPECT_THAT(segment.Columns(i), ElementsAreArray(take.features.columns));
     EXPECT_EQ(segment.HasPoses(i), take.poses.has_value());
+    EXPECT_EQ(segment.RunListsOf(i), FormatRunLists(take.features));
   }
   EXPECT_EQ(segment.Poses(1), *takes[1].poses);
   EXPECT_EQ(test::ErrorOf([&] { (void)segment.Poses(0); }).code(), ErrorCode::kNotFound);
@@ -89,7 +91,7 @@ TEST(SegmentFile, IsLaidOutAsDocumented) {
     return value;
   };
   EXPECT_EQ(bytes.substr(0, 8), "\x89KBSEG\r\n");
-  EXPECT_EQ(number(8), 1 | std::uint64_t{39} << 32U);
+  EXPECT_EQ(number(8), 2 | std::uint64_t{39} << 32U);
   EXPECT_EQ(number(16), bytes.size());
   EXPECT_EQ(number(24), 3U);
   EXPECT_EQ(number(32), kSet);
@@ -105,7 +107,14 @@ TEST(SegmentFile, IsLaidOutAsDocumented) {
   EXPECT_EQ(poses % 64, 0U);
   EXPECT_EQ(number(poses + 24), 0x3FD0000000000000U);  // Step 0.25.
   EXPECT_EQ(number(poses + 32) & 0xFFFFU, takes[1].poses->values[0]);
-  EXPECT_LE(bytes.size(), 64 + 3 * 64 + 22 * 8 + 2 * 32 + 5 * 144 + 5 * 64);
+  const std::uint64_t lists = number(64 + 64 + 56);
+  EXPECT_EQ(lists % 64, 0U);
+  const std::string expected = FormatRunLists(takes[1].features);
+  EXPECT_EQ(number(lists), expected.size());
+  EXPECT_EQ(bytes.substr(lists + 16, expected.size()), expected);
+  std::size_t list_bytes = 0;
+  for (const SegmentTake& take : takes) list_bytes += 16 + FormatRunLists(take.features).size();
+  EXPECT_LE(bytes.size(), 64 + 3 * 64 + 22 * 8 + 2 * 32 + 5 * 144 + list_bytes + 8 * 64);
 }
 
 TEST(SegmentFile, FindsEveryChangedByteOfHeaderTableAndBlocks) {
@@ -115,6 +124,7 @@ TEST(SegmentFile, FindsEveryChangedByteOfHeaderTableAndBlocks) {
     const SegmentReader segment(aligned.text(), "bad.segment");
     for (int i = 0; i < segment.take_count(); ++i) {
       (void)segment.Columns(i);
+      (void)segment.RunListsOf(i);
       if (segment.HasPoses(i)) (void)segment.Poses(i);
     }
   };
@@ -131,7 +141,7 @@ TEST(SegmentFile, FindsEveryChangedByteOfHeaderTableAndBlocks) {
       EXPECT_THAT(error.what(), HasSubstr("bad.segment"));
     }
   }
-  EXPECT_LE(unnoticed, 4 * 63);
+  EXPECT_LE(unnoticed, 7 * 63);
   for (std::size_t size = 0; size < good.size(); ++size) {
     EXPECT_EQ(test::ErrorOf([&] { read_all(good.substr(0, size)); }).code(),
               ErrorCode::kMalformedFile);
@@ -150,13 +160,20 @@ TEST(SegmentFile, OfADamagedTakeLeavesTheOthersReadable) {
   EXPECT_THAT(segment.Columns(1), ElementsAreArray(takes[1].features.columns));
 }
 
+TEST(SegmentFile, HasListsThatAreThoseOfItsWords) {
+  const std::string bytes = FormatSegment(ThreeTakes(), kSet);
+  const AlignedBytes aligned(bytes);
+  const SegmentReader segment(aligned.text(), "a.segment");
+  for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(segment.CheckRunLists(i));
+}
+
 TEST(SegmentFile, OfANewerVersionIsRefusedWithAWord) {
   std::string bytes = FormatSegment(ThreeTakes(), kSet);
-  bytes[8] = 2;
+  bytes[8] = 3;
   const AlignedBytes aligned(bytes);
   const Error error = test::ErrorOf([&] { SegmentReader(aligned.text(), "new.segment"); });
   EXPECT_EQ(error.code(), ErrorCode::kMismatch);
-  EXPECT_THAT(error.what(), HasSubstr("version 2"));
+  EXPECT_THAT(error.what(), HasSubstr("version 3"));
 }
 
 TEST(FormatSegment, RefusesTakesThatDoNotBelongTogether) {

@@ -103,7 +103,7 @@ TEST_F(DamagedLibrary, IsNotOneWhoseSegmentsCannotBeRead) {
   };
   const std::string bytes = test::ReadText(segment);
   std::string newer = bytes;
-  newer[8] = 2;
+  newer[8] = 3;
   test::WriteText(segment, newer);
   expect_kept(ErrorCode::kMismatch, "use a newer one");
 

@@ -38,7 +38,7 @@ TEST(TakeSearch, EndsWithTheTake) {
 }
 
 TEST(TakeSearch, FindsNothingInNothing) {
-  EXPECT_TRUE(SearchTakes(OneFeatureTemplate(), {}).empty());
+  EXPECT_TRUE(SearchTakes(OneFeatureTemplate(), std::vector<TakeView>{}).empty());
 }
 
 // "The feature five times, and the first pose value is 1."

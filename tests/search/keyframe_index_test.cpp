@@ -30,9 +30,22 @@ FeatureMatrix Columns(int count, const std::vector<std::pair<int, std::uint64_t>
   return recording;
 }
 
+// What the index selects; run lists select the same.
 std::vector<Stretch> Select(const std::vector<FeatureMatrix>& recordings,
                             const std::vector<Keyframe>& keyframes, int template_columns) {
-  return KeyframeIndex(recordings, kGroups).Preselect(keyframes, template_columns);
+  std::vector<Stretch> selected =
+      KeyframeIndex(recordings, kGroups).Preselect(keyframes, template_columns);
+  std::vector<Stretch> by_lists;
+  for (int i = 0; i < std::ssize(recordings); ++i) {
+    const FeatureMatrix& recording = recordings[static_cast<std::size_t>(i)];
+    const std::string bytes = FormatRunLists(recording);
+    const RunLists lists(bytes, recording.feature_count, recording.column_count());
+    for (const Stretch& each : Preselect(keyframes, template_columns, kGroups, lists, i)) {
+      by_lists.push_back(each);
+    }
+  }
+  EXPECT_EQ(by_lists, selected);
+  return selected;
 }
 
 // Column 2 is the third: nine columns before it; seven follow: 21 after it.

@@ -119,7 +119,7 @@ struct Recording {
       if (inside) poses.values[static_cast<std::size_t>(column) * kPoseValues] = value;
     }
   }
-  [[nodiscard]] RecordingStreams streams() const { return {&features, &poses}; }
+  [[nodiscard]] RecordingStreams streams() const { return {features, &poses}; }
 
   FeatureMatrix features;
   PoseStream poses;
@@ -221,7 +221,7 @@ TEST(Ranking, NeedsAPoseForEachColumnWhereTheTemplateLooksAtPlaces) {
   brief.values.resize(brief.values.size() - kPoseValues);
   const std::vector<MotionTemplate> templates = {Template("a")};
   for (const PoseStream* poses : {static_cast<const PoseStream*>(nullptr), &std::as_const(brief)}) {
-    const std::vector<RecordingStreams> recordings = {{&recording.features, poses}};
+    const std::vector<RecordingStreams> recordings = {{recording.features, poses}};
     EXPECT_EQ(ErrorOf([&] { (void)RankHits(templates, recordings); }).code(), ErrorCode::kMismatch);
     EXPECT_FALSE(RankHits(templates, recordings, {.places = false}).at(0).empty());
   }
@@ -346,14 +346,14 @@ TEST(Ranking, TakesPlainTemplatesAndEmptyRecordings) {
   const Recording recording(1);
   FeatureMatrix nothing{.rate_hz = 30, .feature_count = 2};
   const PoseStream no_poses{.rate_hz = 30};
-  const std::vector<RecordingStreams> recordings = {{&nothing, &no_poses}, recording.streams()};
+  const std::vector<RecordingStreams> recordings = {{nothing, &no_poses}, recording.streams()};
   const auto hits = RankHits(std::vector{plain}, recordings).at(0);
   ASSERT_FALSE(hits.empty());
   EXPECT_EQ(hits[0].hit.recording, 1);
   EXPECT_EQ(hits[0].hit.cost, 0);
   FeatureMatrix other{.rate_hz = 60, .feature_count = 2};
   EXPECT_EQ(ErrorOf([&] {
-              (void)RankHits(std::vector{plain}, std::vector<RecordingStreams>{{&other, nullptr}});
+              (void)RankHits(std::vector{plain}, std::vector<RecordingStreams>{{other, nullptr}});
             }).code(),
             ErrorCode::kMismatch);
 }

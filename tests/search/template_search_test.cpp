@@ -107,7 +107,7 @@ TEST(TemplateSearch, KeepsTheBestHitsOnly) {
 }
 
 TEST(TemplateSearch, FindsNothingInNothing) {
-  EXPECT_TRUE(SearchTemplate(SomeTemplate(49), {}).empty());
+  EXPECT_TRUE(SearchTemplate(SomeTemplate(49), std::vector<FeatureView>{}).empty());
 }
 
 TEST(TemplateSearch, NamesTheRecordingThatDoesNotMatchTheTemplate) {
@@ -126,14 +126,15 @@ TEST(TemplateSearch, NamesTheRecordingThatDoesNotMatchTheTemplate) {
 
 TEST(TemplateSearch, RefusesThresholdsThatAreNone) {
   for (const double tau : {-0.1, std::numeric_limits<double>::quiet_NaN()}) {
-    const Error error = ErrorOf([&] { (void)SearchTemplate(SomeTemplate(52), {}, {.tau = tau}); });
+    const Error error = ErrorOf(
+        [&] { (void)SearchTemplate(SomeTemplate(52), std::vector<FeatureView>{}, {.tau = tau}); });
     EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
   }
 }
 
 TEST(TemplateSearch, ReportsProgressAndCanBeCancelled) {
   Random random(53);
-  const std::vector<FeatureMatrix> recordings(6, Recording(random, 200));
+  const std::vector<FeatureMatrix> recordings(6, Recording(random, 20'000));
   std::vector<std::size_t> reported;
   SearchOptions options;
   options.progress = [&](std::string_view, std::size_t done, std::size_t total) {

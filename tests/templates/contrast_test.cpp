@@ -28,7 +28,7 @@ struct Streams {
     }
   }
 
-  [[nodiscard]] RecordingStreams streams() const { return {&features, &poses}; }
+  [[nodiscard]] RecordingStreams streams() const { return {features, &poses}; }
 
   FeatureMatrix features;
   PoseStream poses;

@@ -37,7 +37,7 @@ struct PoseStream {
 // A recording as it is learned from and searched: two streams of the same columns. poses may be
 // null where only features are asked for.
 struct RecordingStreams {
-  const FeatureMatrix* features = nullptr;
+  FeatureView features;
   const PoseStream* poses = nullptr;
 };
 

@@ -41,11 +41,11 @@ struct AnnotationTemplate {
 // Cost     O(template columns · columns).
 // Threads  May be called concurrently.
 [[nodiscard]] std::vector<AnnotationCandidate> FindCandidates(
-    const AnnotationTemplate& motion_template, const FeatureMatrix& features);
+    const AnnotationTemplate& motion_template, const FeatureView& features);
 
 // The same in frames of the take's file, from 1.
 [[nodiscard]] std::vector<AnnotationCandidate> FindCandidates(
-    const AnnotationTemplate& motion_template, const TakeFeatures& take);
+    const AnnotationTemplate& motion_template, const TakeView& take);
 
 // The same of templates that know what sets their class off (templates/contrast.h): the costs of
 // RankHits, below the templates' own thresholds, with confidences.
@@ -57,8 +57,7 @@ struct AnnotationTemplate {
     std::span<const MotionTemplate> templates, std::span<const int> classes,
     const RecordingStreams& recording, const RankOptions& ingredients = {});
 [[nodiscard]] std::vector<AnnotationCandidate> FindCandidates(
-    std::span<const MotionTemplate> templates, std::span<const int> classes,
-    const TakeFeatures& take);
+    std::span<const MotionTemplate> templates, std::span<const int> classes, const TakeView& take);
 
 // The choice of candidates that explains most of a take: the largest sum of length · (1 − cost /
 // τ), where no two of one track overlap. So what costs as much as its τ counts nothing, and one
@@ -115,5 +114,13 @@ struct PlaceRange {
 [[nodiscard]] std::optional<double> ThresholdFromBackground(
     const MotionTemplate& motion_template, std::span<const RecordingStreams> background,
     const RankOptions& ingredients = {});
+
+// The two steps of that, for a background that comes some recordings at a time: what the best hit
+// costs in each recording that has one, in any order; and the threshold by all of them.
+// Errors  As RankHits.
+[[nodiscard]] std::vector<double> LeastCosts(const MotionTemplate& motion_template,
+                                             std::span<const RecordingStreams> background,
+                                             const RankOptions& ingredients = {});
+[[nodiscard]] std::optional<double> ThresholdBelow(std::vector<double> least_costs);
 
 }  // namespace kinebase

@@ -6,7 +6,7 @@
 //
 //   offset  bytes
 //        0      8  "\x89KBSEG\r\n": a transfer as text destroys it
-//        8      4  version, 1
+//        8      4  version, 2; version 1 had no lists
 //       12      4  features a word, 1 … 64
 //       16      8  length of the file
 //       24      8  takes
@@ -21,12 +21,14 @@
 //                    32   8  checksum of the words
 //                    40   8  offset of the poses, 0 = none
 //                    48   8  checksum of the poses
-//                    56   8  0
+//                    56   8  offset of the lists, 0 = none (version 1)
 //   then for each take
 //      8·columns    the words: bit i = feature i (features/feature_matrix.h)
 //      32 + 144·columns  the poses, if any: offset x, y, z and step, doubles in cm; then a 16-bit
 //                   number for x, y, z of the 24 standard joints, column by column
 //                   (library/packed_poses.h)
+//      16 + n       the lists: n, the checksum of what follows, and n bytes of run-length inverted
+//                   lists of the features (search/run_lists.h), some 1 to 2 bytes a column
 #pragma once
 
 #include <array>
@@ -58,7 +60,8 @@ struct SegmentTake {
 //
 // takes   At least one; all with the same feature count and rate.
 // Errors  InvalidArgument if they differ.
-// Cost    O(bytes); the result is 8 bytes a column, 152 with poses, and 128 a take.
+// Cost    O(bytes); the result is 8 bytes a column and the lists, 144 more with poses, and up to
+//         256 a take.
 [[nodiscard]] std::string FormatSegment(std::span<const SegmentTake> takes,
                                         std::uint64_t feature_set_hash);
 
@@ -88,6 +91,13 @@ class SegmentReader {
   // Errors  Also NotFound for a take that was stored without poses.
   [[nodiscard]] PackedPoses Poses(int take) const;
 
+  // Where a take shows each feature: bytes for RunLists. Those of a version 1 segment are made of
+  // the words.
+  // They are what was written; CheckRunLists compares them with the words.
+  // Cost  O(bytes of the lists), or of Columns and FormatRunLists.
+  [[nodiscard]] std::string RunListsOf(int take) const;
+  void CheckRunLists(int take) const;
+
  private:
   struct TakeRow {
     ContentKey content = {};
@@ -96,6 +106,7 @@ class SegmentReader {
     std::uint64_t words_checksum = 0;
     std::uint64_t poses = 0;
     std::uint64_t poses_checksum = 0;
+    std::uint64_t lists = 0;
   };
 
   void ReadHeader();
@@ -107,6 +118,7 @@ class SegmentReader {
 
   std::string_view bytes_;
   std::filesystem::path file_;
+  std::uint32_t version_ = 0;
   std::uint64_t feature_set_hash_ = 0;
   double rate_hz_ = 0;
   int feature_count_ = 0;
@@ -118,9 +130,14 @@ class SegmentFile {
  public:
   // Errors  Those of MappedFile and SegmentReader.
   explicit SegmentFile(const std::filesystem::path& file)
-      : mapping_(file), reader_(mapping_.text(), file) {}
+      : mapping_(file), reader_(mapping_.text(), file) {
+    ReleaseMemory();  // A library opens all of its segments.
+  }
 
   [[nodiscard]] const SegmentReader& reader() const { return reader_; }
+
+  // Gives back the memory of what has been read; it is read again when somebody asks.
+  void ReleaseMemory() const { mapping_.Release(mapping_.text()); }
 
  private:
   MappedFile mapping_;

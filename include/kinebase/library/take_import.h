@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kinebase/library/memory_limits.h"
 #include "kinebase/library/takes.h"
 
 namespace kinebase {
@@ -41,6 +42,9 @@ struct ImportOptions {
   LoadOptions load;
   int threads = 0;
   int takes_per_batch = 64;  // What becomes durable, or is lost in a crash, together.
+  // Roughly what reading and a batch may use: fewer files are then read at a time, and batches are
+  // smaller. A file that needs more is read alone.
+  std::int64_t memory_bytes = kDefaultMemoryBytes;
   ProgressCallback progress;
   // Hears of each take once it will be there whatever happens.
   std::function<void(const ImportedTake& take)> on_durable;

@@ -58,6 +58,9 @@ struct StoredFeatureSet {
   friend bool operator==(const StoredFeatureSet&, const StoredFeatureSet&) = default;
 };
 
+// Whether a folder is a library, going by its catalogue.
+[[nodiscard]] bool IsLibrary(const std::filesystem::path& folder);
+
 // A library as it was when it was opened. What others add or remove meanwhile changes nothing of
 // it: segment files do not change, and stay mapped when they are removed.
 class TakeLibrary {
@@ -85,17 +88,45 @@ class TakeLibrary {
                                                        std::uint64_t feature_set_hash,
                                                        double rate_hz) const;
 
+  // How many there are, from the segment's table.
+  // Errors  As Columns, for a table that is damaged.
+  [[nodiscard]] int ColumnCount(const StoredTake& take, std::uint64_t feature_set_hash,
+                                double rate_hz) const;
+
   // Where the joints were, at the rate of the features; the error is that of PackPoses.
   // Errors  As Columns; NotFound for a take that was imported without poses.
   [[nodiscard]] JointTrajectories Poses(const StoredTake& take, std::uint64_t feature_set_hash,
                                         double rate_hz) const;
 
+  // Where a take shows each feature: bytes for RunLists, as search/run_lists.h has them.
+  // Errors  As Columns.
+  // Cost    O(bytes of the lists), some 1 to 2 a column; that of making them where they are not
+  //         stored.
+  [[nodiscard]] std::string RunListsOf(const StoredTake& take, std::uint64_t feature_set_hash,
+                                       double rate_hz) const;
+
+  // Gives back the memory of what has been read of these takes' segments. It can still be read, and
+  // comes from the disk again, or from the system's cache.
+  void ReleaseMemory(std::span<const StoredTake* const> takes) const;
+
   // Reads all that there is of a take and compares checksums.
   // Errors  As Columns.
   void Check(const StoredTake& take) const;
 
+  // The takes that the filter leaves, by path.
+  // Errors  NotFound as Load.
+  [[nodiscard]] std::vector<const StoredTake*> TakesWith(const FeatureSet& features, double rate_hz,
+                                                         const TakeFilter& filter = {},
+                                                         bool with_poses = false) const;
+
+  // One of them, copied; poses are computed from stored ones: body sizes 1e-4.
+  // Errors  As Columns and Poses.
+  [[nodiscard]] TakeFeatures LoadTake(const StoredTake& take, const FeatureSet& features,
+                                      double rate_hz, bool with_poses = false) const;
+
   // The takes that the filter leaves as LoadManyTakeFeatures gives them, without diagnostics. A
-  // take that cannot be read is a failure. Poses are computed from stored ones: body sizes 1e-4.
+  // take that cannot be read is a failure. All are held in memory: library/take_source.h gives
+  // them some at a time, and where they are.
   //
   // Errors  NotFound if no take is left, naming actors and classes that there are; if none of them
   //         has these features, or poses where they are asked for, naming the way to get them.
@@ -110,9 +141,6 @@ class TakeLibrary {
   };
   [[nodiscard]] Location Find(const StoredTake& take, std::uint64_t feature_set_hash,
                               double rate_hz) const;
-  [[nodiscard]] TakeFeatures LoadTake(const StoredTake& take, const FeatureSet& features,
-                                      double rate_hz, bool with_poses) const;
-
   std::filesystem::path folder_;
   std::vector<StoredTake> takes_;
   std::vector<StoredFeatureSet> feature_sets_;

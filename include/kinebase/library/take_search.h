@@ -33,8 +33,13 @@ struct TakeHit {
 // SearchTemplate, its columns turned into frames and seconds.
 // Errors, cost, threads  As SearchTemplate.
 [[nodiscard]] std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
-                                               std::span<const TakeFeatures> takes,
+                                               std::span<const TakeView> takes,
                                                const SearchOptions& options = {});
+[[nodiscard]] inline std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
+                                                      std::span<const TakeFeatures> takes,
+                                                      const SearchOptions& options = {}) {
+  return SearchTakes(motion_template, ViewsOf(takes), options);
+}
 
 // RankHits, its columns turned into frames and seconds: for each template its hits in that order,
 // below its own threshold where options.tau does not say another.
@@ -48,24 +53,33 @@ struct RankTakesOptions {
   ProgressCallback progress;
 };
 [[nodiscard]] std::vector<std::vector<TakeHit>> RankTakes(std::span<const MotionTemplate> templates,
-                                                          std::span<const TakeFeatures> takes,
+                                                          std::span<const TakeView> takes,
                                                           const RankTakesOptions& options = {});
+[[nodiscard]] inline std::vector<std::vector<TakeHit>> RankTakes(
+    std::span<const MotionTemplate> templates, std::span<const TakeFeatures> takes,
+    const RankTakesOptions& options = {}) {
+  return RankTakes(templates, ViewsOf(takes), options);
+}
 
 // The same within stretches only; a stretch's recording is the index of its take.
 [[nodiscard]] std::vector<TakeHit> SearchTakes(const QuantizedTemplate& motion_template,
-                                               std::span<const TakeFeatures> takes,
+                                               std::span<const TakeView> takes,
                                                std::span<const Stretch> stretches,
                                                const SearchOptions& options = {});
 
 // SearchFuzzy, its columns turned into frames and seconds.
 // Errors, cost  As SearchFuzzy.
 [[nodiscard]] std::vector<TakeHit> SearchTakes(const FuzzyQuery& query,
-                                               std::span<const TakeFeatures> takes,
+                                               std::span<const TakeView> takes,
                                                const FuzzyOptions& options = {});
+[[nodiscard]] inline std::vector<TakeHit> SearchTakes(const FuzzyQuery& query,
+                                                      std::span<const TakeFeatures> takes,
+                                                      const FuzzyOptions& options = {}) {
+  return SearchTakes(query, ViewsOf(takes), options);
+}
 
 // Where all takes show what, for keyframes of templates with this feature set.
-[[nodiscard]] KeyframeIndex IndexTakes(std::span<const TakeFeatures> takes,
-                                       const FeatureSet& features);
+[[nodiscard]] KeyframeIndex IndexTakes(std::span<const TakeView> takes, const FeatureSet& features);
 
 // For each column what the best match that ends there costs, +inf where none does: Δ for a plain
 // template; where poses count, with them, as for its hits.
@@ -74,6 +88,6 @@ struct RankTakesOptions {
 // Errors   As RankTakes.
 // Cost     Of ComputeDelta; with poses also the square of the template's columns for each column.
 [[nodiscard]] std::vector<double> CostCurve(const MotionTemplate& motion_template,
-                                            const TakeFeatures& take);
+                                            const TakeView& take);
 
 }  // namespace kinebase

@@ -63,6 +63,33 @@ struct TakeFeatures {
   Diagnostics diagnostics;
 };
 
+// A take as it is searched: what it names lies elsewhere, in a TakeFeatures or in a library on
+// disk, and is valid as long as that.
+struct TakeView {
+  const std::filesystem::path* path = nullptr;
+  const TakeName* name = nullptr;
+  double rate_hz = 0;  // Of the file.
+  std::int64_t frame_count = 0;
+  FeatureView features;
+  const PoseStream* poses = nullptr;         // Null or empty where there are none.
+  const Diagnostics* diagnostics = nullptr;  // Null where none are known.
+
+  TakeView() = default;
+  TakeView(const TakeFeatures& take)  // NOLINT(google-explicit-constructor)
+      : path(&take.path),
+        name(&take.name),
+        rate_hz(take.rate_hz),
+        frame_count(take.frame_count),
+        features(take.features),
+        poses(&take.poses),
+        diagnostics(&take.diagnostics) {}
+};
+
+// [take]
+[[nodiscard]] inline std::vector<TakeView> ViewsOf(std::span<const TakeFeatures> takes) {
+  return {takes.begin(), takes.end()};
+}
+
 // What to extract of a take beside its features.
 struct TakeParts {
   bool poses = false;

@@ -41,7 +41,9 @@ class FeatureIndex {
  public:
   // features  Bit i: feature i is indexed; others are not looked at.
   // Cost      O(columns) time; memory for each run of equal columns.
-  FeatureIndex(std::span<const FeatureMatrix> recordings, std::uint64_t features);
+  FeatureIndex(std::span<const FeatureView> recordings, std::uint64_t features);
+  FeatureIndex(std::span<const FeatureMatrix> recordings, std::uint64_t features)
+      : FeatureIndex(ViewsOf(recordings), features) {}
 
   [[nodiscard]] std::uint64_t features() const { return features_; }
   [[nodiscard]] std::size_t pattern_count() const { return lists_.size(); }

@@ -60,6 +60,9 @@ struct FuzzyOptions {
 // Cost    O(segments · elements · faults²) for recordings that show enough of the elements; others
 //         are passed over by the inverted lists.
 [[nodiscard]] std::vector<Hit> SearchFuzzy(const FuzzyQuery& query,
+                                           std::span<const FeatureView> recordings,
+                                           const FuzzyOptions& options = {});
+[[nodiscard]] std::vector<Hit> SearchFuzzy(const FuzzyQuery& query,
                                            std::span<const FeatureMatrix> recordings,
                                            const FuzzyOptions& options = {});
 

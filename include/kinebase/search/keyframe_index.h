@@ -13,6 +13,7 @@
 
 #include "kinebase/features/feature_set.h"
 #include "kinebase/search/feature_index.h"
+#include "kinebase/search/run_lists.h"
 #include "kinebase/templates/motion_template.h"
 
 namespace kinebase {
@@ -22,7 +23,9 @@ class KeyframeIndex {
  public:
   // groups  FeatureSet::Groups.
   // Cost    That of a FeatureIndex for each group.
-  KeyframeIndex(std::span<const FeatureMatrix> recordings, std::span<const FeatureGroup> groups);
+  KeyframeIndex(std::span<const FeatureView> recordings, std::span<const FeatureGroup> groups);
+  KeyframeIndex(std::span<const FeatureMatrix> recordings, std::span<const FeatureGroup> groups)
+      : KeyframeIndex(ViewsOf(recordings), groups) {}
 
   // By recording and place, without overlaps.
   //
@@ -44,6 +47,18 @@ class KeyframeIndex {
   std::vector<int> column_counts_;     // [recording]
   std::vector<FeatureIndex> indices_;  // One for each group.
 };
+
+// The same of one recording by its run lists, which may be stored: one for each feature, whatever
+// the groups.
+//
+// recording  What the stretches say.
+// Errors     As KeyframeIndex::Preselect.
+// Cost       O(changes of the tested features + columns that show the first keyframe · runs of the
+//            others nearby).
+[[nodiscard]] std::vector<Stretch> Preselect(std::span<const Keyframe> keyframes,
+                                             int template_columns,
+                                             std::span<const FeatureGroup> groups,
+                                             const RunLists& lists, int recording);
 
 // Columns in stretches that do not overlap.
 [[nodiscard]] std::int64_t CountColumns(std::span<const Stretch> stretches);

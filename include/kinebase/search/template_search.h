@@ -24,11 +24,15 @@ struct SearchOptions {
   ProgressCallback progress;
 };
 
-// No path and no suppression crosses from one recording to another.
+// No path and no suppression crosses from one recording to another. Short recordings are taken
+// together, so that many of them cost as much as one long one.
 //
 // Errors   Mismatch if a recording has another rate or feature count than the template; Cancelled.
 // Cost     O(template columns · columns of all recordings); memory for one curve a thread.
 // Threads  The result does not depend on the thread count.
+[[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                              std::span<const FeatureView> recordings,
+                                              const SearchOptions& options = {});
 [[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
                                               std::span<const FeatureMatrix> recordings,
                                               const SearchOptions& options = {});
@@ -38,6 +42,10 @@ struct SearchOptions {
 //
 // stretches  By recording and place, without overlaps.
 // Errors     Also InvalidArgument for stretches that are otherwise or leave their recording.
+[[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
+                                              std::span<const FeatureView> recordings,
+                                              std::span<const Stretch> stretches,
+                                              const SearchOptions& options = {});
 [[nodiscard]] std::vector<Hit> SearchTemplate(const QuantizedTemplate& motion_template,
                                               std::span<const FeatureMatrix> recordings,
                                               std::span<const Stretch> stretches,

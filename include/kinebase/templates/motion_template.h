@@ -33,7 +33,7 @@ struct TemplateMatrix {
   friend bool operator==(const TemplateMatrix&, const TemplateMatrix&) = default;
 };
 
-[[nodiscard]] TemplateMatrix ToTemplateMatrix(const FeatureMatrix& features);  // Weights 1.
+[[nodiscard]] TemplateMatrix ToTemplateMatrix(const FeatureView& features);  // Weights 1.
 
 // How the pieces of the method are computed: the paper's words, or the authors' toolbox as it ran.
 enum class Profile { kBonn, kPaper };

@@ -146,7 +146,9 @@ void FilterRangeOnTarget(const FilterPlan& plan, const std::uint64_t* columns, s
   // Both as in scan_kernel.cpp: what lies further left no path from there reaches.
   const std::size_t reach = 2 * (rows - 1);
   const std::size_t halo = std::min(begin, reach);
-  const auto work = std::make_unique<FilterWorkspace>();
+  // Not zeroed: that would cost more than a short recording takes. Nothing is read before it is
+  // written but the padding of a tile, whose bounds nobody looks at.
+  const auto work = std::make_unique_for_overwrite<FilterWorkspace>();
   std::vector<LeftBounds> left(rows);
   for (std::size_t tile = begin - halo; tile < end; tile += kFilterTile) {
     const Stripes stripes(std::min(kFilterTile, end - tile), hn::Lanes(BoundsTag()));

@@ -1,5 +1,6 @@
 // Touches every layer, so that a library that was not installed or not linked is noticed.
 #include <iostream>
+#include <vector>
 
 #include "kinebase/features/feature_extraction.h"
 #include "kinebase/library/takes.h"
@@ -12,7 +13,7 @@ int main() {
   const kinebase::QuantizedTemplate nothing{.rate_hz = 30,
                                             .feature_count = features.feature_count(),
                                             .columns = {kinebase::QuantizedColumn{}}};
-  const auto hits = kinebase::SearchTemplate(nothing, {});
+  const auto hits = kinebase::SearchTemplate(nothing, std::vector<kinebase::FeatureView>{});
   const bool understands = kinebase::ParsePoseView("front").has_value() &&
                            kinebase::ParseTakeStretch("take.amc:120-480").first_frame == 120 &&
                            !kinebase::SyntheticClasses().empty();
