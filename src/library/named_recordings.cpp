@@ -22,8 +22,8 @@ const StoredTake* NamedRecordings::Find(const std::filesystem::path& path, const
   if (named->second.size() == 1) return named->second.front();
   throw Error(
       ErrorCode::kInvalidArgument,
-      fmt::format("{} may be {} or {}; name the folder or --formats of those that are meant", Quoted(name),
-                  named->second[0]->path.string(), named->second[1]->path.string()),
+      fmt::format("{} may be {} or {}; name the folder or --formats of those that are meant",
+                  Quoted(name), named->second[0]->path.string(), named->second[1]->path.string()),
       place);
 }
 
