@@ -7,6 +7,8 @@
 #include "cli/console.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
+#include "kinebase/core/mapped_file.h"
+#include "kinebase/library/descriptions.h"
 #include "kinebase/library/take_import.h"
 
 namespace kinebase::cli {
@@ -17,6 +19,7 @@ struct ImportCommandOptions {
   FeatureOptions features;
   std::vector<std::filesystem::path> paths;
   std::filesystem::path list;
+  std::filesystem::path descriptions;
   std::filesystem::path library;
   bool with_poses = false;
   int takes_per_batch = ImportOptions().takes_per_batch;
@@ -93,7 +96,11 @@ int Run(const ImportCommandOptions& options) {
                        .progress = MakeProgress(options.common)};
   import.on_durable = [&](const ImportedTake& take) { ShowTake(take, options.common); };
   std::vector<TakeFailure> missing;
-  const std::vector<ImportSource> sources = FindSources(options, missing);
+  std::vector<ImportSource> sources = FindSources(options, missing);
+  if (!options.descriptions.empty()) {
+    const MappedFile table(options.descriptions);
+    Describe(sources, ParseDescriptions(table.text(), options.descriptions));
+  }
   ImportReport report = ImportTakes(options.library, sources, import);
   report.failures.insert(report.failures.begin(), missing.begin(), missing.end());
 
@@ -124,6 +131,10 @@ void AddImportCommand(CLI::App& program, int& exit_code) {
       ->add_option("--list", options->list,
                    "Only the files of this table, with their classes and actors (CSV: "
                    "file,class,actor)")
+      ->type_name("FILE");
+  command
+      ->add_option("--descriptions", options->descriptions,
+                   "What the files show, in words (CSV: file,description, or class,description)")
       ->type_name("FILE");
   command->add_flag("--poses", options->with_poses,
                     "Also keep where the joints are, for mt+ templates and to play takes back");

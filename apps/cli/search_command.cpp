@@ -17,6 +17,7 @@
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/features/vocabulary.h"
+#include "kinebase/library/library_templates.h"
 #include "kinebase/library/take_search.h"
 #include "kinebase/library/take_source.h"
 #include "kinebase/templates/calibration.h"
@@ -163,7 +164,7 @@ FuzzyQuery FuzzyQueryOf(const Query& query, const SearchCommandOptions& options)
 }
 
 Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& options) {
-  Query query{.motion_template = ReadTemplate(path)};
+  Query query{.motion_template = ReadOrLoadTemplate(path, options.library)};
   query.features = FeatureSetOfTemplate(path, query.motion_template, options.feature_set);
   SetKeyframes(query, options);
   if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <vector>
 
-#include "kinebase/library/take_library.h"
+#include "kinebase/library/take_choice.h"
 
 namespace kinebase::cli {
 
-// --actors and --classes; given back for needs().
-inline std::vector<CLI::Option*> AddTakeFilterOptions(CLI::App& command, TakeFilter& filter) {
-  return {command.add_option("--actors", filter.actors, "Only takes of these actors: a,b")
-              ->delimiter(',')
-              ->type_name("NAMES"),
-          command.add_option("--classes", filter.classes, "Only takes of these classes: a,b")
-              ->delimiter(',')
-              ->type_name("NAMES")};
-}
+// --actors, --classes, --labelled, --formats and --text; given back for needs().
+std::vector<CLI::Option*> AddTakeFilterOptions(CLI::App& command, TakeFilter& filter);
+
+// Those, and TAKE…
+void AddTakeChoiceOptions(CLI::App& command, TakeChoice& choice);
 
 }  // namespace kinebase::cli

@@ -6,36 +6,19 @@
 #include <limits>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
+#include "library/catalogue_schema.h"
+#include "library/catalogue_text.h"
 #include "library/library_layout.h"
+#include "library/row_checksum.h"
 
 namespace kinebase::internal {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t kVersion = 1;
-
-constexpr char kSchema[] = R"(
-CREATE TABLE takes(
-  id INTEGER PRIMARY KEY AUTOINCREMENT, path TEXT NOT NULL UNIQUE, content TEXT NOT NULL,
-  format TEXT NOT NULL, actor TEXT NOT NULL, class TEXT NOT NULL, take TEXT NOT NULL,
-  rate_hz REAL NOT NULL, frames INTEGER NOT NULL);
-CREATE TABLE segments(id INTEGER PRIMARY KEY AUTOINCREMENT, bytes INTEGER NOT NULL);
-CREATE TABLE feature_sets(hash INTEGER PRIMARY KEY, name TEXT NOT NULL);
-CREATE TABLE features(
-  take INTEGER NOT NULL REFERENCES takes(id) ON DELETE CASCADE,
-  feature_set INTEGER NOT NULL REFERENCES feature_sets(hash),
-  rate_hz REAL NOT NULL,
-  segment INTEGER NOT NULL REFERENCES segments(id),
-  slot INTEGER NOT NULL, poses INTEGER NOT NULL,
-  PRIMARY KEY(take, feature_set, rate_hz)) WITHOUT ROWID;
-CREATE INDEX features_of_segment ON features(segment);
-PRAGMA application_id = 0x4B494E45;
-PRAGMA user_version = 1;
-)";
 
 std::string KeyText(const ContentKey& key) { return fmt::format("{:016x}{:016x}", key[1], key[0]); }
 
@@ -62,6 +45,80 @@ void CheckTake(const StoredTake& take, const fs::path& catalogue) {
                   "the files into a new library",
                   take.path.string(), take.frame_count, take.rate_hz),
       {.file = catalogue});
+}
+
+using Places = std::unordered_map<std::int64_t, std::size_t>;  // Of takes, by their ids.
+
+void ReadFeatures(const SqliteDatabase& database, const Places& places,
+                  std::vector<StoredTake>& takes) {
+  SqliteStatement rows(database,
+                       "SELECT take, feature_set, rate_hz, segment, slot, poses FROM features "
+                       "ORDER BY take, feature_set, rate_hz");
+  while (rows.Step()) {
+    const auto take = places.find(rows.Integer(0));
+    if (take == places.end()) continue;
+    takes[take->second].features.push_back(
+        {.feature_set_hash = static_cast<std::uint64_t>(rows.Integer(1)),
+         .rate_hz = rows.Real(2),
+         .segment = rows.Integer(3),
+         .slot = static_cast<int>(rows.Integer(4)),
+         .has_poses = rows.Integer(5) != 0});
+  }
+}
+
+void ReadLabels(const SqliteDatabase& database, const Places& places,
+                std::vector<StoredTake>& takes) {
+  SqliteStatement rows(database,
+                       "SELECT take, label, first_frame, last_frame FROM labels "
+                       "ORDER BY take, label, first_frame, last_frame");
+  while (rows.Step()) {
+    const auto take = places.find(rows.Integer(0));
+    if (take == places.end()) continue;
+    takes[take->second].labels.push_back({rows.Text(1), rows.Integer(2), rows.Integer(3)});
+  }
+}
+
+void CompareChecksums(const SqliteDatabase& database, const Places& places,
+                      std::vector<StoredTake>& takes) {
+  SqliteStatement rows(database, "SELECT id, checksum FROM takes");
+  while (rows.Step()) {
+    const auto place = places.find(rows.Integer(0));
+    if (place == places.end()) continue;
+    StoredTake& take = takes[place->second];
+    take.is_intact = ChecksumOf(take) == rows.Integer(1);
+  }
+}
+
+// In the order of the table's key, as they are read again.
+void PutFeatures(const SqliteDatabase& database, StoredTake& take) {
+  std::ranges::sort(take.features, {}, [](const StoredFeatures& features) {
+    return std::pair(static_cast<std::int64_t>(features.feature_set_hash), features.rate_hz);
+  });
+  SqliteStatement(database, "DELETE FROM features WHERE take = ?1").Bind(take.id).Run();
+  SqliteStatement insert(database, "INSERT INTO features VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
+  for (const StoredFeatures& features : take.features) {
+    insert.Bind(take.id).Bind(static_cast<std::int64_t>(features.feature_set_hash));
+    insert.Bind(features.rate_hz).Bind(features.segment).Bind(std::int64_t{features.slot});
+    insert.Bind(std::int64_t{features.has_poses}).Run();
+  }
+}
+
+void PutLabels(const SqliteDatabase& database, StoredTake& take) {
+  std::ranges::sort(take.labels);
+  const auto repeated = std::ranges::unique(take.labels);
+  take.labels.erase(repeated.begin(), repeated.end());
+  SqliteStatement(database, "DELETE FROM labels WHERE take = ?1").Bind(take.id).Run();
+  SqliteStatement insert(database, "INSERT INTO labels VALUES(?1, ?2, ?3, ?4)");
+  for (const StoredLabel& label : take.labels) {
+    insert.Bind(take.id).Bind(label.text).Bind(label.first_frame).Bind(label.last_frame).Run();
+  }
+}
+
+void PutChecksum(const SqliteDatabase& database, const StoredTake& take) {
+  SqliteStatement(database, "UPDATE takes SET checksum = ?2 WHERE id = ?1")
+      .Bind(take.id)
+      .Bind(ChecksumOf(take))
+      .Run();
 }
 
 }  // namespace
@@ -97,41 +154,49 @@ void CheckIsLibrary(const fs::path& library) {
 Catalogue::Catalogue(const fs::path& library, SqliteDatabase::Access access)
     : database_(CatalogueFile(library), access) {
   // What is reported as added has to be there after a power failure, also the journal's absence.
-  database_.Execute("PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON");
-  const std::int64_t version = database_.Number("PRAGMA user_version");
-  is_empty_ = version == 0 && database_.Number("SELECT count(*) FROM sqlite_master") == 0;
-  constexpr std::int64_t kApplication = 0x4B494E45;
-  if (!is_empty_ && database_.Number("PRAGMA application_id") != kApplication) {
+  // Of a catalogue that somebody else made up, nothing is run.
+  database_.Execute(
+      "PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF");
+  version_ = database_.Number("PRAGMA user_version");
+  const bool is_empty =
+      version_ == 0 && database_.Number("SELECT count(*) FROM sqlite_master") == 0;
+  if (!is_empty && database_.Number("PRAGMA application_id") != kCatalogueApplication) {
     throw Error(ErrorCode::kMismatch, "is a database of another program",
-                {.file = CatalogueFile(library)});
+                {.file = database_.file()});
   }
-  if (version > kVersion) {
+  if (version_ > kCatalogueVersion || version_ < 0) {
     throw Error(ErrorCode::kMismatch,
                 fmt::format("is a catalogue of version {}; this Kinebase reads up to {}: use a "
                             "newer one",
-                            version, kVersion),
-                {.file = CatalogueFile(library)});
+                            version_, kCatalogueVersion),
+                {.file = database_.file()});
   }
-  if (is_empty_) CheckHasNoLostSegments(library);
-  if (access == SqliteDatabase::Access::kCreate && is_empty_) PrepareSchema();
+  CheckSchema(database_);
+  if (is_empty) CheckHasNoLostSegments(library);
+  if (access == SqliteDatabase::Access::kCreate && version_ < kCatalogueVersion) Upgrade();
 }
 
-void Catalogue::PrepareSchema() {
+void Catalogue::Upgrade() {
   SqliteTransaction transaction(database_, SqliteTransaction::Kind::kWrite);
-  database_.Execute(kSchema);
+  const std::int64_t before = version_;
+  while (version_ < kCatalogueVersion) MakeVersion(database_, ++version_);
+  if (before == 1) {
+    for (const StoredTake& take : Takes()) PutTake(take);
+  }
   transaction.Commit();
-  is_empty_ = false;
 }
 
-std::vector<StoredTake> Catalogue::Takes() const {
-  if (is_empty_) return {};
+std::vector<StoredTake> Catalogue::TakeRows() const {
   std::vector<StoredTake> takes;
-  std::unordered_map<std::int64_t, std::size_t> places;
-  SqliteStatement rows(database_,
-                       "SELECT id, path, content, format, actor, class, take, rate_hz, frames "
-                       "FROM takes");
+  takes.reserve(static_cast<std::size_t>(database_.Number("SELECT count(*) FROM takes")));
+  SqliteStatement rows(
+      database_,
+      version_ == 1
+          ? "SELECT id, path, content, format, actor, class, take, rate_hz, frames FROM takes"
+          : "SELECT id, path, content, format, actor, class, take, rate_hz, frames, description, "
+            "skeleton, skeleton_key, imported_s, file_time_s, file_bytes, program, options "
+            "FROM takes");
   while (rows.Step()) {
-    places[rows.Integer(0)] = takes.size();
     takes.push_back({.id = rows.Integer(0),
                      .path = rows.Text(1),
                      .content = ParseKey(rows.Text(2)),
@@ -139,20 +204,30 @@ std::vector<StoredTake> Catalogue::Takes() const {
                      .name = {rows.Text(4), rows.Text(5), rows.Text(6)},
                      .rate_hz = rows.Real(7),
                      .frame_count = rows.Integer(8)});
-    CheckTake(takes.back(), database_.file());
+    StoredTake& take = takes.back();
+    CheckTake(take, database_.file());
+    if (version_ == 1) continue;
+    take.description = rows.Text(9);
+    take.skeleton = {rows.Text(10), ParseKey(rows.Text(11))};
+    take.origin = {.imported_s = rows.Integer(12),
+                   .file_time_s = rows.Integer(13),
+                   .file_bytes = rows.Integer(14),
+                   .program = rows.Text(15),
+                   .options = rows.Text(16)};
   }
-  SqliteStatement features(database_,
-                           "SELECT take, feature_set, rate_hz, segment, slot, poses FROM features "
-                           "ORDER BY take, feature_set, rate_hz");
-  while (features.Step()) {
-    const auto take = places.find(features.Integer(0));
-    if (take == places.end()) continue;
-    takes[take->second].features.push_back(
-        {.feature_set_hash = static_cast<std::uint64_t>(features.Integer(1)),
-         .rate_hz = features.Real(2),
-         .segment = features.Integer(3),
-         .slot = static_cast<int>(features.Integer(4)),
-         .has_poses = features.Integer(5) != 0});
+  return takes;
+}
+
+std::vector<StoredTake> Catalogue::Takes() const {
+  if (version_ == 0) return {};
+  std::vector<StoredTake> takes = TakeRows();
+  std::unordered_map<std::int64_t, std::size_t> places;
+  places.reserve(takes.size());
+  for (std::size_t i = 0; i < takes.size(); ++i) places[takes[i].id] = i;
+  ReadFeatures(database_, places, takes);
+  if (version_ > 1) {
+    ReadLabels(database_, places, takes);
+    CompareChecksums(database_, places, takes);
   }
   // As folders are searched: SQLite would put "a-b" before "a/b".
   std::ranges::sort(takes, {}, &StoredTake::path);
@@ -160,7 +235,7 @@ std::vector<StoredTake> Catalogue::Takes() const {
 }
 
 std::vector<StoredFeatureSet> Catalogue::FeatureSets() const {
-  if (is_empty_) return {};
+  if (version_ == 0) return {};
   SqliteStatement rows(database_,
                        "SELECT hash, name, rate_hz, count(*) FROM features JOIN feature_sets "
                        "ON hash = feature_set GROUP BY hash, rate_hz ORDER BY name, rate_hz");
@@ -175,7 +250,7 @@ std::vector<StoredFeatureSet> Catalogue::FeatureSets() const {
 }
 
 std::vector<std::int64_t> Catalogue::Segments() const {
-  if (is_empty_) return {};
+  if (version_ == 0) return {};
   SqliteStatement rows(database_, "SELECT id FROM segments ORDER BY id");
   std::vector<std::int64_t> segments;
   while (rows.Step()) segments.push_back(rows.Integer(0));
@@ -183,7 +258,16 @@ std::vector<std::int64_t> Catalogue::Segments() const {
 }
 
 std::int64_t Catalogue::SegmentBytes() const {
-  return is_empty_ ? 0 : database_.Number("SELECT coalesce(sum(bytes), 0) FROM segments");
+  return version_ == 0 ? 0 : database_.Number("SELECT coalesce(sum(bytes), 0) FROM segments");
+}
+
+std::vector<std::int64_t> Catalogue::FindText(std::string_view query) const {
+  if (version_ == 0) return {};
+  if (version_ == 1 && database_.Number("SELECT count(*) FROM temp.sqlite_master") == 0) {
+    MakeTextTable(database_, "temp");
+    FillText(database_, Takes());
+  }
+  return internal::FindText(database_, query);
 }
 
 std::int64_t Catalogue::NextSegment() const {
@@ -211,27 +295,41 @@ void Catalogue::AddSegment(std::int64_t segment, std::int64_t bytes) {
 }
 
 void Catalogue::PutTake(const StoredTake& take) {
-  SqliteStatement row(database_,
-                      "INSERT INTO takes(path, content, format, actor, class, take, rate_hz, "
-                      "frames) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT(path) DO UPDATE "
-                      "SET content = excluded.content, format = excluded.format, "
-                      "actor = excluded.actor, class = excluded.class, take = excluded.take, "
-                      "rate_hz = excluded.rate_hz, frames = excluded.frames RETURNING id");
+  SqliteStatement row(
+      database_,
+      "INSERT INTO takes(path, content, format, actor, class, take, rate_hz, frames, description, "
+      "skeleton, skeleton_key, imported_s, file_time_s, file_bytes, program, options) "
+      "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16) "
+      "ON CONFLICT(path) DO UPDATE SET content = excluded.content, format = excluded.format, "
+      "actor = excluded.actor, class = excluded.class, take = excluded.take, "
+      "rate_hz = excluded.rate_hz, frames = excluded.frames, description = excluded.description, "
+      "skeleton = excluded.skeleton, skeleton_key = excluded.skeleton_key, "
+      "imported_s = excluded.imported_s, file_time_s = excluded.file_time_s, "
+      "file_bytes = excluded.file_bytes, program = excluded.program, options = excluded.options "
+      "RETURNING id");
   row.Bind(take.path.native()).Bind(KeyText(take.content)).Bind(take.format);
   row.Bind(take.name.actor).Bind(take.name.class_name).Bind(take.name.take);
-  row.Bind(take.rate_hz).Bind(take.frame_count);
-  const std::int64_t id = row.Step() ? row.Integer(0) : 0;
+  row.Bind(take.rate_hz).Bind(take.frame_count).Bind(take.description);
+  row.Bind(take.skeleton.path.native()).Bind(KeyText(take.skeleton.key));
+  row.Bind(take.origin.imported_s).Bind(take.origin.file_time_s).Bind(take.origin.file_bytes);
+  row.Bind(take.origin.program).Bind(take.origin.options);
+  StoredTake stored = take;
+  stored.id = row.Step() ? row.Integer(0) : 0;
   row.Run();
-  SqliteStatement(database_, "DELETE FROM features WHERE take = ?1").Bind(id).Run();
-  SqliteStatement insert(database_, "INSERT INTO features VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
-  for (const StoredFeatures& features : take.features) {
-    insert.Bind(id).Bind(static_cast<std::int64_t>(features.feature_set_hash));
-    insert.Bind(features.rate_hz).Bind(features.segment).Bind(std::int64_t{features.slot});
-    insert.Bind(std::int64_t{features.has_poses}).Run();
-  }
+  PutFeatures(database_, stored);
+  PutLabels(database_, stored);
+  PutChecksum(database_, stored);
+  PutText(database_, stored);
+}
+
+void Catalogue::MoveFeatures(const StoredTake& take) {
+  StoredTake stored = take;
+  PutFeatures(database_, stored);
+  PutChecksum(database_, stored);
 }
 
 void Catalogue::RemoveTake(std::int64_t id) {
+  RemoveText(database_, id);
   SqliteStatement(database_, "DELETE FROM takes WHERE id = ?1").Bind(id).Run();
 }
 
@@ -250,6 +348,19 @@ std::string Catalogue::Check() const {
   if (found != "ok") return found;
   SqliteStatement references(database_, "PRAGMA foreign_key_check");
   return references.Step() ? "a row of " + references.Text(0) + " refers to nothing" : "";
+}
+
+bool Catalogue::HasText() const { return version_ < 2 || HasTextOf(database_, Takes()); }
+
+bool Catalogue::HasSoundTextIndex() const {
+  return version_ < 2 || internal::HasSoundTextIndex(database_);
+}
+
+void RemoveSegments(const fs::path& library, std::span<const std::int64_t> segments) {
+  for (const std::int64_t segment : segments) {
+    std::error_code ignored;
+    fs::remove(SegmentPath(library, segment), ignored);
+  }
 }
 
 std::vector<fs::path> FindLeftovers(const fs::path& library,

@@ -7,6 +7,7 @@
 
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/library/hdm05.h"
+#include "library/name_words.h"
 
 namespace kinebase {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using Words = std::vector<std::string>;
 
 bool IsLetterOrDigit(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
-bool IsUpper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
-bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 // Runs of letters and digits, in lower case: "Sit-ups, 5 times" → sit, ups, 5, times.
 Words SplitWords(std::string_view text) {
@@ -33,14 +32,8 @@ Words SplitWords(std::string_view text) {
 // What a class is called, and the words in it: "kickRFront1Reps" → kickrfront1reps, kick, r,
 // front, 1, reps.
 void AddClassName(std::string_view name, Words& words) {
-  std::string spaced;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const bool begins = i > 0 && (IsUpper(name[i]) || IsDigit(name[i]) != IsDigit(name[i - 1]));
-    if (begins) spaced += ' ';
-    spaced += name[i];
-  }
   words.push_back(ToLower(name));
-  std::ranges::move(SplitWords(spaced), std::back_inserter(words));
+  std::ranges::move(SplitWords(internal::SpacedName(name)), std::back_inserter(words));
 }
 
 Words operator+(Words a, const Words& b) {

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "fmt/format.h"
 #include "kinebase/core/csv.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/take_choice.h"
 #include "library/catalogue.h"
+#include "library/catalogue_records.h"
 #include "library/damage.h"
 #include "library/library_layout.h"
 #include "library/library_lock.h"
@@ -32,6 +33,17 @@ void CheckCatalogue(const fs::path& library, const Catalogue& catalogue) {
               {.file = internal::CatalogueFile(library)});
 }
 
+void VerifyCatalogue(const fs::path& library, VerifyReport& report) {
+  const Catalogue catalogue(library, SqliteDatabase::Access::kRead);
+  {
+    const SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kRead);
+    CheckCatalogue(library, catalogue);
+    report.words_are_damaged = !catalogue.HasText();
+    report.damaged_records = internal::DamagedRecords(catalogue);
+  }
+  if (!catalogue.HasSoundTextIndex()) report.words_are_damaged = true;
+}
+
 // Errors  Of a take of which nobody can tell: see damage.h.
 bool IsDamaged(const TakeLibrary& library, const StoredTake& take) {
   try {
@@ -43,59 +55,12 @@ bool IsDamaged(const TakeLibrary& library, const StoredTake& take) {
   }
 }
 
-bool IsBelow(const fs::path& path, const fs::path& folder) {
-  const auto [folder_end, path_end] = std::ranges::mismatch(folder, path);
-  return folder_end == folder.end();
-}
-
-// Whether a name means this take: its path, a folder above it, or its file's name.
-bool Means(const fs::path& name, const fs::path& resolved, const StoredTake& take) {
-  return take.path == name || IsBelow(take.path, resolved) || take.path.filename() == name;
-}
-
-fs::path Resolved(const fs::path& name) {
-  std::error_code unreachable;  // The file may be gone, and is meant all the same.
-  fs::path resolved = fs::weakly_canonical(name, unreachable);
-  // A folder that ends in a slash has an empty last part, which no path has.
-  return resolved.has_filename() ? resolved : resolved.parent_path();
-}
-
-std::set<std::int64_t> TakesOfNames(const std::vector<fs::path>& names,
-                                    std::span<const StoredTake> takes, const fs::path& library) {
-  std::set<std::int64_t> ids;
-  for (const fs::path& name : names) {
-    const fs::path resolved = Resolved(name);
-    bool is_there = false;
-    for (const StoredTake& take : takes) {
-      if (!Means(name, resolved, take)) continue;
-      ids.insert(take.id);
-      is_there = true;
-    }
-    if (is_there) continue;
-    throw Error(ErrorCode::kNotFound,
-                fmt::format("has no take {}; 'kinebase library list' shows what there is",
-                            Quoted(name.string())),
-                {.file = library});
-  }
-  return ids;
-}
-
-void RemoveFiles(const fs::path& library, std::span<const std::int64_t> segments) {
-  for (const std::int64_t segment : segments) {
-    std::error_code ignored;  // What stays is a leftover.
-    fs::remove(internal::SegmentPath(library, segment), ignored);
-  }
-}
-
 }  // namespace
 
 VerifyReport VerifyLibrary(const fs::path& library, int threads, const ProgressCallback& progress) {
   internal::CheckIsLibrary(library);
   VerifyReport report;
-  {
-    const Catalogue catalogue(library, SqliteDatabase::Access::kRead);
-    CheckCatalogue(library, catalogue);
-  }
+  VerifyCatalogue(library, report);
   const TakeLibrary opened(library);
   const auto& takes = opened.takes();
   std::vector<std::optional<Error>> errors(takes.size());
@@ -116,20 +81,15 @@ VerifyReport VerifyLibrary(const fs::path& library, int threads, const ProgressC
 }
 
 std::vector<fs::path> RemoveTakes(const fs::path& library, const Removal& removal) {
-  const bool is_filtered = !removal.filter.actors.empty() || !removal.filter.classes.empty();
-  if (removal.names.empty() && !is_filtered && !removal.damaged) {
+  if (removal.names.empty() && removal.filter == TakeFilter() && !removal.damaged) {
     throw Error(ErrorCode::kInvalidArgument, "nothing was named that is to be removed");
   }
   internal::CheckIsLibrary(library);
   const internal::LibraryLock lock(library);
   const TakeLibrary opened(library);
-  opened.CheckFilter(removal.filter);
-  const std::set<std::int64_t> named = TakesOfNames(removal.names, opened.takes(), library);
-  std::vector<const StoredTake*> chosen;
-  for (const StoredTake& take : opened.takes()) {
-    if (!removal.names.empty() && !named.contains(take.id)) continue;
-    if (!removal.filter.Accepts(take)) continue;
-    if (!removal.damaged || IsDamaged(opened, take)) chosen.push_back(&take);
+  std::vector<const StoredTake*> chosen = ChooseTakes(opened, {removal.names, removal.filter});
+  if (removal.damaged) {
+    std::erase_if(chosen, [&](const StoredTake* take) { return !IsDamaged(opened, *take); });
   }
   if (chosen.empty()) return {};
 
@@ -138,7 +98,7 @@ std::vector<fs::path> RemoveTakes(const fs::path& library, const Removal& remova
   for (const StoredTake* take : chosen) catalogue.RemoveTake(take->id);
   const std::vector<std::int64_t> unused = catalogue.DropUnusedSegments();
   transaction.Commit();
-  RemoveFiles(library, unused);
+  internal::RemoveSegments(library, unused);
   std::vector<fs::path> removed;
   removed.reserve(chosen.size());
   for (const StoredTake* take : chosen) removed.push_back(take->path);

@@ -65,6 +65,10 @@ std::int64_t SqliteDatabase::Number(const char* sql) const {
   return statement.Step() ? statement.Integer(0) : 0;
 }
 
+bool SqliteDatabase::is_read_only() const {
+  return sqlite3_db_readonly(handle_.get(), "main") == 1;
+}
+
 void SqliteStatement::Finalize::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
@@ -98,6 +102,12 @@ SqliteStatement& SqliteStatement::Bind(std::string_view text) {
   return *this;
 }
 
+SqliteStatement& SqliteStatement::Bind(const std::optional<double>& number) {
+  if (number) return Bind(*number);
+  Check(sqlite3_bind_null(statement_.get(), ++bound_));
+  return *this;
+}
+
 bool SqliteStatement::Step() {
   const int result = sqlite3_step(statement_.get());
   if (result == SQLITE_ROW) return true;
@@ -125,6 +135,11 @@ std::string SqliteStatement::Text(int column) const {
   const int size = sqlite3_column_bytes(statement_.get(), column);
   if (text == nullptr) return {};
   return {reinterpret_cast<const char*>(text), static_cast<std::size_t>(size)};
+}
+
+std::optional<double> SqliteStatement::RealOrNull(int column) const {
+  if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL) return {};
+  return Real(column);
 }
 
 SqliteTransaction::SqliteTransaction(const SqliteDatabase& database, Kind kind)

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,6 +33,7 @@ class SqliteDatabase {
   [[nodiscard]] std::int64_t Number(const char* sql) const;  // The one number of a query.
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] bool is_read_only() const;  // As the system has it, whatever was asked for.
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
   [[noreturn]] void ThrowError(int result) const;
 
@@ -51,6 +53,7 @@ class SqliteStatement {
   SqliteStatement& Bind(std::int64_t number);
   SqliteStatement& Bind(double number);
   SqliteStatement& Bind(std::string_view text);
+  SqliteStatement& Bind(const std::optional<double>& number);  // Empty: NULL.
 
   [[nodiscard]] bool Step();  // Whether there is another row.
   void Run();                 // To the end; then it can be bound again.
@@ -58,6 +61,7 @@ class SqliteStatement {
   [[nodiscard]] std::int64_t Integer(int column) const;
   [[nodiscard]] double Real(int column) const;
   [[nodiscard]] std::string Text(int column) const;
+  [[nodiscard]] std::optional<double> RealOrNull(int column) const;
 
  private:
   void Check(int result) const;

@@ -12,15 +12,18 @@
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/descriptions.h"
 #include "kinebase/library/packed_poses.h"
 #include "kinebase/library/segment_file.h"
 #include "kinebase/library/take_library.h"
 #include "kinebase/motion/motion_editing.h"
 #include "library/catalogue.h"
 #include "library/checksum.h"
+#include "library/damage.h"
 #include "library/library_layout.h"
 #include "library/library_lock.h"
 #include "library/memory_gate.h"
+#include "library/take_origin.h"
 
 namespace kinebase {
 namespace {
@@ -78,18 +81,12 @@ ContentKey KeyOf(const fs::path& file, const LoadOptions& options) {
       {motion.text(), text(skeleton), text(names), text(set), WayOfReading(file, options)});
 }
 
-fs::path Resolved(const fs::path& file) {
-  std::error_code unreachable;
-  fs::path resolved = fs::canonical(file, unreachable);
-  return unreachable ? fs::absolute(file, unreachable) : resolved;
-}
-
 // A file once, however often it is named: what the first says of it that says anything.
 std::vector<ImportSource> WithoutRepeats(std::span<const ImportSource> sources) {
   std::vector<ImportSource> unique;
   std::map<fs::path, std::size_t> places;
   for (const ImportSource& source : sources) {
-    const auto [place, is_new] = places.try_emplace(Resolved(source.file), unique.size());
+    const auto [place, is_new] = places.try_emplace(internal::Resolved(source.file), unique.size());
     if (is_new) {
       unique.push_back(source);
       continue;
@@ -97,6 +94,7 @@ std::vector<ImportSource> WithoutRepeats(std::span<const ImportSource> sources) 
     ImportSource& first = unique[place->second];
     if (first.class_name.empty()) first.class_name = source.class_name;
     if (first.actor.empty()) first.actor = source.actor;
+    if (first.description.empty()) first.description = source.description;
   }
   return unique;
 }
@@ -163,7 +161,7 @@ class Importer {
 
   void Remember(StoredTake take) {
     for (const StoredFeatures& features : take.features) {
-      if (IsWanted(features)) stored_.insert_or_assign(take.content, features);
+      if (take.is_intact && IsWanted(features)) stored_.insert_or_assign(take.content, features);
     }
     std::string path = take.path.native();
     known_.insert_or_assign(std::move(path), std::move(take));
@@ -222,12 +220,13 @@ class Importer {
   // Which take a file is, and whether it has to be read.
   void Recognise(const ImportSource& source, Arrival& arrival) const {
     const ContentKey content = KeyOf(source.file, options_.load);
-    const fs::path path = Resolved(source.file);
+    const fs::path path = internal::Resolved(source.file);
     const auto known = known_.find(path.native());
     const bool is_known = known != known_.end();
     const bool has_same_content = is_known && known->second.content == content;
     StoredTake& take = arrival.take;
     if (is_known) {
+      internal::CheckTakeRow(known->second, library_);
       take = known->second;
       arrival.state = ImportState::kUpdated;
     }
@@ -284,6 +283,7 @@ class Importer {
     };
     set(take.name.class_name, source.class_name);
     set(take.name.actor, source.actor);
+    set(take.description, source.description);
     return is_new;
   }
 
@@ -298,6 +298,9 @@ class Importer {
     take.format = recording.format;
     take.rate_hz = recording.rate_hz();
     take.frame_count = recording.frame_count();
+    if (take.description.empty()) take.description = Hdm05Description(source.file);
+    take.skeleton = internal::SkeletonFileOf(recording);
+    take.origin = internal::OriginOf(source.file, options_.load);
     arrival.diagnostics = std::move(recording.diagnostics);
     std::erase_if(take.features, [&](const StoredFeatures& each) { return IsSameSet(each); });
     if (arrival.same_as) return;
@@ -370,9 +373,8 @@ class Importer {
     transaction.Commit();
     for (const std::int64_t unused : dropped) {
       std::erase_if(stored_, [&](const auto& entry) { return entry.second.segment == unused; });
-      std::error_code ignored;  // What stays is a leftover.
-      fs::remove(internal::SegmentPath(library_, unused), ignored);
     }
+    internal::RemoveSegments(library_, dropped);
   }
 
   [[nodiscard]] std::int64_t WriteSegment(std::int64_t segment,

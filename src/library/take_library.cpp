@@ -6,6 +6,7 @@
 
 #include "fmt/format.h"
 #include "fmt/ranges.h"
+#include "kinebase/core/text_scanner.h"
 #include "kinebase/features/pose_stream.h"
 #include "library/catalogue.h"
 #include "library/damage.h"
@@ -19,8 +20,6 @@ using internal::Catalogue;
 using internal::SqliteDatabase;
 using internal::SqliteTransaction;
 
-constexpr std::string_view kDamageRemedy =
-    "run 'kinebase library remove LIBRARY --damaged' and import its files again";
 constexpr std::string_view kAccessRemedy =
     "it may be sound: see to its permissions and its disk, and try again";
 
@@ -42,16 +41,48 @@ void CheckNames(const std::vector<std::string>& asked, const std::set<std::strin
   }
 }
 
-std::vector<const StoredTake*> Choose(const std::vector<StoredTake>& takes,
-                                      const TakeFilter& filter, const fs::path& library) {
-  std::vector<const StoredTake*> chosen;
+// "amc" and "ASF" both mean "ASF/AMC".
+bool IsFormat(std::string_view asked, std::string_view format) {
+  if (EqualsIgnoringCase(asked, format)) return true;
+  const std::size_t slash = format.find('/');
+  return slash != std::string_view::npos && (EqualsIgnoringCase(asked, format.substr(0, slash)) ||
+                                             IsFormat(asked, format.substr(slash + 1)));
+}
+
+bool HasLabel(const StoredTake& take, const std::vector<std::string>& labels) {
+  return labels.empty() || std::ranges::any_of(take.labels, [&](const StoredLabel& label) {
+           return Contains(labels, label.text);
+         });
+}
+
+bool HasFormat(const StoredTake& take, const std::vector<std::string>& formats) {
+  return formats.empty() || std::ranges::any_of(formats, [&](const std::string& asked) {
+           return IsFormat(asked, take.format);
+         });
+}
+
+// Each name of the filter is one that some take has.
+void CheckFilter(const TakeFilter& filter, const std::vector<StoredTake>& takes,
+                 const fs::path& library) {
+  std::set<std::string> actors;
+  std::set<std::string> classes;
+  std::set<std::string> labels;
+  std::set<std::string> formats;
   for (const StoredTake& take : takes) {
-    if (filter.Accepts(take)) chosen.push_back(&take);
+    if (!take.name.actor.empty()) actors.insert(take.name.actor);
+    if (!take.name.class_name.empty()) classes.insert(take.name.class_name);
+    for (const StoredLabel& label : take.labels) labels.insert(label.text);
+    formats.insert(take.format);
   }
-  if (chosen.empty()) {
-    throw Error(ErrorCode::kNotFound, "has no take of these actors and classes", {.file = library});
+  CheckNames(filter.actors, actors, "actor", library);
+  CheckNames(filter.classes, classes, "class", library);
+  CheckNames(filter.labels, labels, "label", library);
+  for (const std::string& asked : filter.formats) {
+    if (std::ranges::any_of(formats, [&](const auto& each) { return IsFormat(asked, each); })) {
+      continue;
+    }
+    CheckNames({asked}, formats, "format", library);
   }
-  return chosen;
 }
 
 const StoredFeatures* FindFeatures(const StoredTake& take, std::uint64_t feature_set_hash,
@@ -106,7 +137,7 @@ std::variant<SegmentFile, Error> OpenSegment(const fs::path& path) {
 [[noreturn]] void ThrowUnusable(const Error& error) {
   std::string message = error.message();
   if (internal::IsDamage(error)) {
-    message += fmt::format("; {}", kDamageRemedy);
+    message += fmt::format("; {}", internal::kDamageRemedy);
   } else if (error.code() == ErrorCode::kIoFailure) {
     message += fmt::format("; {}", kAccessRemedy);
   }
@@ -116,7 +147,8 @@ std::variant<SegmentFile, Error> OpenSegment(const fs::path& path) {
 }  // namespace
 
 bool TakeFilter::Accepts(const StoredTake& take) const {
-  return Contains(actors, take.name.actor) && Contains(classes, take.name.class_name);
+  return Contains(actors, take.name.actor) && Contains(classes, take.name.class_name) &&
+         HasLabel(take, labels) && HasFormat(take, formats);
 }
 
 bool IsLibrary(const fs::path& folder) {
@@ -144,19 +176,31 @@ std::vector<std::int64_t> TakeLibrary::segments() const {
   return numbers;
 }
 
-void TakeLibrary::CheckFilter(const TakeFilter& filter) const {
-  std::set<std::string> actors;
-  std::set<std::string> classes;
-  for (const StoredTake& take : takes_) {
-    if (!take.name.actor.empty()) actors.insert(take.name.actor);
-    if (!take.name.class_name.empty()) classes.insert(take.name.class_name);
+std::vector<const StoredTake*> TakeLibrary::Choose(const TakeFilter& filter) const {
+  CheckFilter(filter, takes_, folder_);
+  std::vector<std::int64_t> with_text;  // Ascending.
+  if (!filter.text.empty()) {
+    with_text = Catalogue(folder_, SqliteDatabase::Access::kRead).FindText(filter.text);
+    if (with_text.empty()) {
+      throw Error(ErrorCode::kNotFound,
+                  fmt::format("has no take with the words {} in its name, class, actor, skeleton, "
+                              "labels or description",
+                              Quoted(filter.text)),
+                  {.file = folder_});
+    }
   }
-  CheckNames(filter.actors, actors, "actor", folder_);
-  CheckNames(filter.classes, classes, "class", folder_);
+  std::vector<const StoredTake*> chosen;
+  chosen.reserve(takes_.size());
+  for (const StoredTake& take : takes_) {
+    const bool has_text = filter.text.empty() || std::ranges::binary_search(with_text, take.id);
+    if (has_text && filter.Accepts(take)) chosen.push_back(&take);
+  }
+  return chosen;
 }
 
 TakeLibrary::Location TakeLibrary::Find(const StoredTake& take, std::uint64_t feature_set_hash,
                                         double rate_hz) const {
+  internal::CheckTakeRow(take, folder_);
   const StoredFeatures* features = FindFeatures(take, feature_set_hash, rate_hz);
   if (features == nullptr) {
     throw Error(
@@ -236,6 +280,7 @@ void TakeLibrary::ReleaseMemory(std::span<const StoredTake* const> takes) const 
 }
 
 void TakeLibrary::Check(const StoredTake& take) const {
+  internal::CheckTakeRow(take, folder_);
   for (const StoredFeatures& features : take.features) {
     (void)Columns(take, features.feature_set_hash, features.rate_hz);
     const Location location = Find(take, features.feature_set_hash, features.rate_hz);
@@ -270,8 +315,11 @@ std::vector<const StoredTake*> TakeLibrary::TakesWith(const FeatureSet& features
     throw Error(ErrorCode::kNotFound, "holds no takes; kinebase import adds some",
                 {.file = folder_});
   }
-  CheckFilter(filter);
-  std::vector<const StoredTake*> chosen = Choose(takes_, filter, folder_);
+  const std::vector<const StoredTake*> chosen = Choose(filter);
+  if (chosen.empty()) {
+    throw Error(ErrorCode::kNotFound, "has no take that is all that is asked for",
+                {.file = folder_});
+  }
   CheckAnyHas(chosen, features, rate_hz, with_poses, folder_);
   return chosen;
 }

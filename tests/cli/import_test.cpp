@@ -81,10 +81,11 @@ TEST_F(LibraryOnDisk, IsListedVerifiedExportedAndEmptied) {
   const auto list = RunKinebase({"library", "list", library(), "--json"}).Json();
   EXPECT_THAT(FieldsOf(list), ElementsAre("takes:array", "feature_sets:array", "bytes:integer"));
   ASSERT_THAT(list["takes"], SizeIs(12));
-  EXPECT_THAT(
-      FieldsOf(list["takes"][0]),
-      ElementsAre("file:string", "format:string", "actor:string", "class:string", "take:string",
-                  "frames:integer", "rate_hz:number", "duration_s:number", "poses:boolean"));
+  EXPECT_THAT(FieldsOf(list["takes"][0]),
+              ElementsAre("file:string", "format:string", "actor:string", "class:string",
+                          "take:string", "frames:integer", "rate_hz:number", "duration_s:number",
+                          "poses:boolean", "description:null", "labels:array", "skeleton:string",
+                          "skeleton_key:string", "origin:object"));
   EXPECT_EQ(list["takes"][0]["poses"], true);
   EXPECT_EQ(list["feature_sets"][0]["name"], "bonn");
   const ProgramResult some =

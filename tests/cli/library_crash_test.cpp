@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <set>
 #include <sstream>
@@ -224,6 +225,104 @@ TEST_F(CrashingImport, OfALibraryThatIsBeingMadeCanBeginAgain) {
     ExpectCompletes();
   }
 }
+
+// Changes of a library that is there, each of which is made whole or not at all.
+class CrashingChange : public CrashingImport {
+ protected:
+  // Two segments, one of them with a take that was removed; the other takes have labels.
+  CrashingChange() {
+    EXPECT_EQ(RunKinebase(ArgumentsOfAll()).exit_code, 0);
+    EXPECT_EQ(Change({"label", "--add", "gym", "--actors", "sa"}).exit_code, 0);
+    EXPECT_EQ(Change({"remove", "--actors", "sb", "--classes", "squat1Reps"}).exit_code, 0);
+    fs::copy(library(), prepared_, fs::copy_options::recursive);
+    before_ = Takes();
+  }
+
+  void RestorePrepared() const {
+    fs::remove_all(library());
+    fs::copy(prepared_, library(), fs::copy_options::recursive);
+  }
+
+  // kinebase library ACTION LIBRARY …, with a fault if one is named.
+  [[nodiscard]] ProgramResult Change(std::vector<std::string> arguments,
+                                     const std::map<std::string, std::string>& fault = {}) const {
+    arguments.insert(arguments.begin() + 1, library());
+    arguments.insert(arguments.begin(), "library");
+    std::map<std::string, std::string> environment = fault;
+    if (!fault.empty()) {
+      environment["LD_PRELOAD"] = KINEBASE_FAULTS;
+      environment["ASAN_OPTIONS"] = kAsanOptions;
+    }
+    return RunKinebase(arguments, {.environment = environment});
+  }
+
+  // What is listed of the takes, but for where their features are.
+  [[nodiscard]] nlohmann::ordered_json Takes() const {
+    return RunKinebase({"library", "list", library(), "--json"}).Json()["takes"];
+  }
+
+  // Whatever goes wrong where: the library is sound, and as it was or as it is to become.
+  void ExpectWholeOrNotAtAll(const std::vector<std::string>& arguments) const {
+    const fs::path total = recordings_.scratch() / "total";
+    ASSERT_EQ(Change(arguments, {{"KINEBASE_FAULT_TOTAL", total}}).exit_code, 0);
+    const int calls = std::stoi(ReadText(total));
+    ASSERT_GE(calls, 10);
+    const auto after = Takes();
+    int undone = 0;
+    for (const char* kind : {"kill", "torn", "full", "once"}) {
+      for (const int at : SeededPoints(8, calls)) {
+        SCOPED_TRACE(std::string(kind) + ' ' + std::to_string(at));
+        RestorePrepared();
+        const ProgramResult result = Change(
+            arguments, {{"KINEBASE_FAULT", kind}, {"KINEBASE_FAULT_AT", std::to_string(at)}});
+        if (std::string(kind) == "full" && result.exit_code != 0) {
+          EXPECT_EQ(result.exit_code, 1);
+          EXPECT_THAT(result.ErrorLines(), SizeIs(1));
+        }
+        const ProgramResult verified = RunKinebase({"library", "verify", library()});
+        EXPECT_EQ(verified.exit_code, 0) << verified.err;
+        const auto takes = Takes();
+        if (result.exit_code == 0) {
+          EXPECT_EQ(takes, after);
+        } else {
+          EXPECT_TRUE(takes == before_ || takes == after);
+        }
+        undone += takes == before_ ? 1 : 0;
+        EXPECT_EQ(Change(arguments).exit_code, takes == after && IsOnlyOnce(arguments) ? 1 : 0);
+        EXPECT_EQ(Takes(), after);
+        ExpectCleanAfterCompacting();
+      }
+    }
+    EXPECT_GE(undone, after == before_ ? 24 : 4);
+  }
+
+  // Takes that are gone cannot be removed again.
+  [[nodiscard]] static bool IsOnlyOnce(const std::vector<std::string>& arguments) {
+    return arguments.front() == "remove";
+  }
+
+  void ExpectCleanAfterCompacting() const {
+    EXPECT_EQ(Change({"compact", "--quiet"}).exit_code, 0);
+    const auto verified = RunKinebase({"library", "verify", library(), "--json"});
+    EXPECT_EQ(verified.exit_code, 0) << verified.err;
+    EXPECT_EQ(verified.Json()["leftovers"], 0);
+  }
+
+  nlohmann::ordered_json before_;
+
+ private:
+  fs::path prepared_ = recordings_.scratch() / "prepared";
+};
+
+TEST_F(CrashingChange, OfLabelsIsMadeWholeOrNotAtAll) {
+  ExpectWholeOrNotAtAll({"label", "--add", "warm-up", "--remove", "gym", "--actors", "sa"});
+}
+
+TEST_F(CrashingChange, ByRemovingIsMadeWholeOrNotAtAll) {
+  ExpectWholeOrNotAtAll({"remove", "--classes", "kickRFront1Reps"});
+}
+
+TEST_F(CrashingChange, ByCompactingLosesNothing) { ExpectWholeOrNotAtAll({"compact"}); }
 
 }  // namespace
 }  // namespace kinebase::test

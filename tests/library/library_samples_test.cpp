@@ -8,6 +8,10 @@
 
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/library_annotations.h"
+#include "kinebase/library/library_compaction.h"
+#include "kinebase/library/library_labels.h"
+#include "kinebase/library/library_templates.h"
 #include "kinebase/library/library_upkeep.h"
 #include "kinebase/library/take_library.h"
 #include "kinebase/search/run_lists.h"
@@ -24,25 +28,31 @@ using testing::SizeIs;
 class LibrarySample : public testing::Test {
  protected:
   // A copy: SQLite may want to write beside it.
-  explicit LibrarySample(const std::string& name = "library_v1")
-      : sample_(fs::path(KINEBASE_SOURCE_DIR) / "tests" / "library" / "samples" / name) {
-    fs::copy(sample_, library(), fs::copy_options::recursive);
+  explicit LibrarySample(const std::string& name = "library_v1") {
+    fs::copy(samples_ / name, library(), fs::copy_options::recursive);
   }
 
   [[nodiscard]] fs::path library() const { return folder_.path() / "library"; }
 
-  // "features" or "joints" of a take.
+  // "features" or "joints" of a take; all samples have the same takes.
   [[nodiscard]] CsvTable Truth(const StoredTake& take, const std::string& what) const {
-    return test::ReadCsv(sample_ / (take.path.stem().string() + "." + what + ".csv"));
+    return test::ReadCsv(samples_ / "library_v1" /
+                         (take.path.stem().string() + "." + what + ".csv"));
   }
 
  private:
-  fs::path sample_;
+  fs::path samples_ = fs::path(KINEBASE_SOURCE_DIR) / "tests" / "library" / "samples";
   test::TemporaryFolder folder_;
 };
 
-TEST_F(LibrarySample, OfVersion1IsRead) {
+TEST_F(LibrarySample, OfVersion1IsReadAndNotChanged) {
+  const std::string catalogue = test::ReadText(this->library() / "catalogue.sqlite");
   const TakeLibrary library(this->library());
+  EXPECT_THAT(library.Choose({.formats = {"amc"}, .text = "squat"}), SizeIs(1));
+  EXPECT_THAT(VerifyLibrary(this->library()).damaged, IsEmpty());
+  EXPECT_THAT(ListTemplates(this->library()), IsEmpty());
+  EXPECT_THAT(ListAnnotations(this->library(), {}), IsEmpty());
+  EXPECT_EQ(test::ReadText(this->library() / "catalogue.sqlite"), catalogue);
   ASSERT_THAT(library.takes(), SizeIs(2));
   EXPECT_EQ(library.takes()[0].name.class_name, "kickRFront1Reps");
   EXPECT_EQ(library.takes()[0].name.actor, "sa");
@@ -74,6 +84,75 @@ TEST_F(LibrarySample, OfVersion1IsRead) {
       EXPECT_NEAR(poses.at(0, static_cast<int>(i / 3))[static_cast<int>(i % 3)], truth, 0.005);
     }
   }
+}
+
+TEST_F(LibrarySample, OfVersion1BecomesVersion2WhenItIsChanged) {
+  const auto before = TakeLibrary(library()).takes();
+  ChangeLabels(library(), {.filter = {.classes = {"squat1Reps"}}}, {.add = {"gym"}});
+  const TakeLibrary upgraded(library());
+  ASSERT_THAT(upgraded.takes(), SizeIs(2));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(upgraded.takes()[i].id, before[i].id);
+    EXPECT_EQ(upgraded.takes()[i].path, before[i].path);
+    EXPECT_EQ(upgraded.takes()[i].content, before[i].content);
+    EXPECT_EQ(upgraded.takes()[i].features, before[i].features);
+    EXPECT_EQ(upgraded.takes()[i].origin, TakeOrigin());  // What nobody noted stays unknown.
+  }
+  EXPECT_THAT(upgraded.Choose({.labels = {"gym"}, .text = "squat gym"}), SizeIs(1));
+  EXPECT_THAT(upgraded.Choose({.text = "kick"}), SizeIs(1));
+  const VerifyReport report = VerifyLibrary(library());
+  EXPECT_THAT(report.damaged, IsEmpty());
+  EXPECT_FALSE(report.words_are_damaged);
+}
+
+class LibrarySample2 : public LibrarySample {
+ protected:
+  LibrarySample2() : LibrarySample("library_v2") {}
+};
+
+// The same two takes, in two segments, with what version 2 keeps beside them.
+TEST_F(LibrarySample2, IsRead) {
+  const TakeLibrary library(this->library());
+  ASSERT_THAT(library.takes(), SizeIs(2));
+  const StoredTake& squat = library.takes()[1];
+  EXPECT_EQ(squat.description, "bends the knees and rises");
+  EXPECT_EQ(squat.skeleton.path, "/made-up/lib/asf/SYN_sa.asf");
+  EXPECT_EQ(squat.skeleton.key, library.takes()[0].skeleton.key);
+  EXPECT_EQ(squat.origin.program, "kinebase 0.1.0");
+  EXPECT_GT(squat.origin.imported_s, 0);
+  EXPECT_THAT(squat.labels, testing::ElementsAre(StoredLabel{"deep", 20, 90}, StoredLabel{"gym"}));
+  EXPECT_THAT(library.Choose({.labels = {"gym"}, .text = "bends deep"}), SizeIs(1));
+  for (const StoredTake& take : library.takes()) {
+    const auto columns = library.Columns(take, take.features.front().feature_set_hash, 30);
+    const CsvTable features = Truth(take, "features");
+    ASSERT_EQ(columns.size(), features.rows.size());
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      for (std::size_t row = 0; row < 39; ++row) {
+        EXPECT_EQ((columns[column] >> row) & 1U, features.rows[column][row + 1] == "1" ? 1U : 0U);
+      }
+    }
+  }
+}
+
+TEST_F(LibrarySample2, HoldsATemplateAndAnAnnotation) {
+  const MotionTemplate squat = LoadTemplate(library(), "squat1Reps");
+  EXPECT_EQ(squat.matrix.feature_count, 39);
+  const auto annotations = ListAnnotations(library(), {});
+  ASSERT_THAT(annotations, SizeIs(1));
+  EXPECT_EQ(annotations[0].class_name, "squat1Reps");
+  EXPECT_EQ(annotations[0].first_frame, 1);
+  EXPECT_EQ(annotations[0].cost, 0.0125);
+  EXPECT_EQ(annotations[0].feature_set_hash, squat.feature_set_hash);
+}
+
+TEST_F(LibrarySample2, IsSoundAndCanBeChanged) {
+  const VerifyReport report = VerifyLibrary(library());
+  EXPECT_THAT(report.damaged, IsEmpty());
+  EXPECT_THAT(report.damaged_records, IsEmpty());
+  EXPECT_FALSE(report.words_are_damaged);
+  EXPECT_EQ(CompactLibrary(library()).segments_after, 1);
+  EXPECT_THAT(RemoveTakes(library(), {.filter = {.labels = {"gym"}}}), SizeIs(1));
+  EXPECT_THAT(VerifyLibrary(library()).damaged, IsEmpty());
 }
 
 TEST_F(LibrarySample, OfVersion1IsSoundAndCanBeChanged) {

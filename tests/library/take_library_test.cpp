@@ -174,11 +174,11 @@ TEST_F(DamagedLibrary, WhoseNumbersHaveRunOutTakesNoMore) {
 TEST_F(DamagedLibrary, OfANewerVersionIsRefusedWithAWord) {
   const fs::path catalogue = takes_.library() / "catalogue.sqlite";
   std::string bytes = test::ReadText(catalogue);
-  bytes[63] = 2;  // The last byte of SQLite's user version.
+  bytes[63] = 3;  // The last byte of SQLite's user version.
   test::WriteText(catalogue, bytes);
   const Error error = ErrorOf([&] { TakeLibrary opened(takes_.library()); });
   EXPECT_EQ(error.code(), ErrorCode::kMismatch);
-  EXPECT_THAT(error.what(), HasSubstr("version 2"));
+  EXPECT_THAT(error.what(), HasSubstr("version 3"));
   EXPECT_EQ(ErrorOf([&] { takes_.Import(); }).code(), ErrorCode::kMismatch);
 }
 

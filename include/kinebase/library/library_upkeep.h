@@ -16,12 +16,17 @@ namespace kinebase {
 struct VerifyReport {
   std::int64_t takes = 0;
   std::int64_t segment_bytes = 0;
-  std::vector<TakeFailure> damaged;  // Takes that cannot be read, by path, with the segment.
+  // Takes that cannot be read, or whose rows of the catalogue are not what was written; by path.
+  std::vector<TakeFailure> damaged;
+  // Stored templates and annotations whose rows are not what was written: "template 'squat'".
+  std::vector<std::string> damaged_records;
+  // Whether the words by which takes are found are not those of the takes; CompactLibrary mends it.
+  bool words_are_damaged = false;
   // Files of an import that was cut short, or still goes on; the next import removes them.
   std::vector<std::filesystem::path> leftovers;
 };
 
-// Reads everything and compares all checksums.
+// Reads everything and compares all checksums, of the catalogue too.
 // Errors  Those of TakeLibrary; MalformedFile if the catalogue is damaged; Cancelled.
 // Cost    O(bytes of the library).
 [[nodiscard]] VerifyReport VerifyLibrary(const std::filesystem::path& library, int threads = 0,
@@ -30,8 +35,7 @@ struct VerifyReport {
 // Which takes to remove: those of the names, of the filter, and damaged ones; each that is given
 // has to hold.
 struct Removal {
-  // Paths of files as the library has them, or below this folder, or the names of files alone.
-  std::vector<std::filesystem::path> names;
+  std::vector<std::filesystem::path> names;  // As in TakeChoice.
   TakeFilter filter;
   bool damaged = false;
 };
@@ -39,8 +43,8 @@ struct Removal {
 // Removes takes, and segment files that hold no other; in files that hold others their room stays
 // taken. Says which. All or none, whatever happens.
 //
-// Errors  Those of TakeLibrary; InvalidArgument if nothing was asked for; NotFound for a name,
-//         actor or class that is not there; IoFailure if somebody else is writing. With `damaged`
+// Errors  Those of TakeLibrary and ChooseTakes; InvalidArgument if nothing was asked for; IoFailure
+//         if somebody else is writing. With `damaged`
 //         also IoFailure and Mismatch for a segment that may be sound, but cannot be read here.
 std::vector<std::filesystem::path> RemoveTakes(const std::filesystem::path& library,
                                                const Removal& removal);

@@ -15,16 +15,17 @@
 
 namespace kinebase {
 
-// A file to import, and what a list says of it; empty: what its name says.
+// A file to import, and what lists say of it; empty: what its name says.
 struct ImportSource {
   std::filesystem::path file;
   std::string class_name;
   std::string actor;
+  std::string description;  // In words; empty: what is known of HDM05 (library/descriptions.h).
 };
 
 enum class ImportState {
   kAdded,      // New in the library.
-  kUpdated,    // Was there; its contents, class, actor, features or poses are others now.
+  kUpdated,    // Was there; contents, class, actor, description, features or poses are others.
   kUnchanged,  // Was there; nothing was read but the bytes of the file.
 };
 

@@ -4,6 +4,7 @@
 // docs/design/library.md says how a library is laid out and why a crash does it no harm.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -28,6 +29,34 @@ struct StoredFeatures {
   friend bool operator==(const StoredFeatures&, const StoredFeatures&) = default;
 };
 
+// A key word of a take, or of a stretch of it.
+struct StoredLabel {
+  std::string text;
+  std::int64_t first_frame = 0;  // From 1, inclusive; 0: the take as a whole.
+  std::int64_t last_frame = 0;
+
+  friend auto operator<=>(const StoredLabel&, const StoredLabel&) = default;
+};
+
+// The file that a skeleton was read from, where it is not the motion's own.
+struct StoredSkeleton {
+  std::filesystem::path path;  // Empty: the format has none, or nobody noted it.
+  ContentKey key = {};         // Of its bytes: takes of one skeleton have the same.
+
+  friend bool operator==(const StoredSkeleton&, const StoredSkeleton&) = default;
+};
+
+// How a take came to be in the library. Unknown (0, empty) for libraries of version 1.
+struct TakeOrigin {
+  std::int64_t imported_s = 0;   // Seconds since 1970, UTC.
+  std::int64_t file_time_s = 0;  // When the file was last changed, likewise.
+  std::int64_t file_bytes = 0;
+  std::string program;  // "kinebase 0.1.0".
+  std::string options;  // Of reading, as the command line has them; empty: none were given.
+
+  friend bool operator==(const TakeOrigin&, const TakeOrigin&) = default;
+};
+
 // What the catalogue knows of a take.
 struct StoredTake {
   std::int64_t id = 0;
@@ -37,15 +66,29 @@ struct StoredTake {
   TakeName name;       // By the file's name, or a list of clips. Its rate is not kept.
   double rate_hz = 0;  // Of the file.
   std::int64_t frame_count = 0;
+  std::string description;
+  StoredSkeleton skeleton;
+  TakeOrigin origin;
+  std::vector<StoredLabel> labels;       // In their order.
   std::vector<StoredFeatures> features;  // At least one.
+  bool is_intact = true;                 // Whether all this is what was written, by its checksum.
 };
 
-// Which takes are meant; what is empty leaves all.
+// Which takes are meant: those that each of these accepts. What is empty accepts all; of several
+// names one will do.
 struct TakeFilter {
   std::vector<std::string> actors;
   std::vector<std::string> classes;
+  std::vector<std::string> labels;   // Of the take or a stretch of it.
+  std::vector<std::string> formats;  // "ASF/AMC", or a part of it, in any case: "amc".
+  // Words that all have to be in the names of file, class, actor and skeleton, in labels or the
+  // description, in any case; the beginning of a word will do.
+  std::string text;
 
+  // But for the text, which TakeLibrary::Choose looks up.
   [[nodiscard]] bool Accepts(const StoredTake& take) const;
+
+  friend bool operator==(const TakeFilter&, const TakeFilter&) = default;
 };
 
 // A set of features that takes of a library have.
@@ -70,19 +113,22 @@ class TakeLibrary {
   // Cost    O(takes).
   explicit TakeLibrary(const std::filesystem::path& folder);
 
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const std::vector<StoredTake>& takes() const { return takes_; }  // By path.
   [[nodiscard]] const std::vector<StoredFeatureSet>& feature_sets() const { return feature_sets_; }
   [[nodiscard]] std::int64_t segment_bytes() const { return segment_bytes_; }
   [[nodiscard]] std::vector<std::int64_t> segments() const;  // Their numbers.
 
-  // Errors  NotFound for an actor or class of the filter that no take has, naming those that there
-  //         are.
-  void CheckFilter(const TakeFilter& filter) const;
+  // The takes that the filter accepts, by path; may be none.
+  // Errors  NotFound for a name of the filter that no take has, naming those that there are, and
+  //         for a text that is nowhere; with a text those of the constructor.
+  [[nodiscard]] std::vector<const StoredTake*> Choose(const TakeFilter& filter) const;
 
   // The words of a take where they are in its segment file; valid as long as the library lives.
   // Errors  NotFound if the take has no such features; MalformedFile or NotFound if its segment is
-  //         damaged or missing; IoFailure if it cannot be read, Mismatch if it is of a newer
-  //         version: then it may be sound. Each names the segment and what to do.
+  //         damaged or missing, or its row of the catalogue is damaged; IoFailure if it cannot be
+  //         read, Mismatch if it is of a newer version: then it may be sound. Each names the
+  //         segment and what to do.
   // Cost    O(columns), at the speed of memory: the checksum is compared.
   [[nodiscard]] std::span<const std::uint64_t> Columns(const StoredTake& take,
                                                        std::uint64_t feature_set_hash,
@@ -110,7 +156,7 @@ class TakeLibrary {
   void ReleaseMemory(std::span<const StoredTake* const> takes) const;
 
   // Reads all that there is of a take and compares checksums.
-  // Errors  As Columns.
+  // Errors  As Columns; MalformedFile if what the catalogue says of it is damaged.
   void Check(const StoredTake& take) const;
 
   // The takes that the filter leaves, by path.
@@ -128,8 +174,8 @@ class TakeLibrary {
   // take that cannot be read is a failure. All are held in memory: library/take_source.h gives
   // them some at a time, and where they are.
   //
-  // Errors  NotFound if no take is left, naming actors and classes that there are; if none of them
-  //         has these features, or poses where they are asked for, naming the way to get them.
+  // Errors  Those of Choose; NotFound if no take is left; if none of them has these features, or
+  //         poses where they are asked for, naming the way to get them.
   [[nodiscard]] TakeBatch Load(const FeatureSet& features, double rate_hz,
                                const TakeFilter& filter = {}, bool with_poses = false) const;
 

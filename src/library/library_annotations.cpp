@@ -1,0 +1,201 @@
+#include "kinebase/library/library_annotations.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "fmt/format.h"
+#include "kinebase/core/csv.h"
+#include "kinebase/core/text_scanner.h"
+#include "kinebase/library/annotation_file.h"
+#include "library/catalogue_records.h"
+#include "library/damage.h"
+#include "library/library_lock.h"
+#include "library/named_recordings.h"
+
+namespace kinebase {
+namespace {
+
+namespace fs = std::filesystem;
+using internal::AnnotationOfTake;
+using internal::Catalogue;
+using internal::SqliteDatabase;
+using internal::SqliteTransaction;
+
+constexpr std::string_view kNoClass = "unknown";  // As `kinebase annotate` calls it.
+
+// A column that may be missing, or empty in a row.
+std::string_view Field(const CsvTable& table, std::size_t row, std::string_view column) {
+  const auto index = table.FindColumn(column);
+  return index ? Trim(table.rows[row][*index]) : std::string_view();
+}
+
+std::optional<double> NumberField(const CsvTable& table, std::size_t row, std::string_view column) {
+  const std::string_view field = Field(table, row, column);
+  if (field.empty()) return {};
+  const auto number = ParseDouble(field);
+  if (number && *number >= 0) return *number + 0.0;  // Not −0, which SQLite stores as 0.
+  throw Error(ErrorCode::kMalformedFile,
+              fmt::format("{} {}; expected a number from 0, or nothing", column, Quoted(field)),
+              {table.file, table.lines[row]});
+}
+
+std::int64_t FrameField(const CsvTable& table, std::size_t row, std::string_view column,
+                        std::int64_t lowest) {
+  const std::string& field = table.rows[row][table.Column(column)];
+  const auto frame = ParseInteger(Trim(field));
+  if (frame && *frame >= lowest) return *frame;
+  throw Error(ErrorCode::kMalformedFile,
+              fmt::format("{} {}; expected a whole number from {}", column, Quoted(field), lowest),
+              {table.file, table.lines[row]});
+}
+
+// The hashes of the feature sets of stored templates, by the templates' names.
+std::map<std::string, std::uint64_t> FeatureSetsOfTemplates(const Catalogue& catalogue) {
+  std::map<std::string, std::uint64_t> sets;
+  for (const StoredTemplate& stored : internal::TemplateRows(catalogue)) {
+    sets.emplace(stored.name, stored.feature_set_hash);
+  }
+  return sets;
+}
+
+void CheckWithin(const StoredAnnotation& annotation, const StoredTake& take, const Place& place) {
+  if (annotation.last_frame <= take.frame_count) return;
+  throw Error(
+      ErrorCode::kInvalidArgument,
+      fmt::format("frames {}-{} are not all within {}, which has {}", annotation.first_frame,
+                  annotation.last_frame, take.path.string(), take.frame_count),
+      place);
+}
+
+// Those of the chosen takes, with their paths.
+std::vector<AnnotationOfTake> ChosenRows(const Catalogue& catalogue, const TakeLibrary& opened,
+                                         const TakeChoice& choice) {
+  std::map<std::int64_t, const StoredTake*> takes;
+  for (const StoredTake* take : ChooseTakes(opened, choice)) takes.emplace(take->id, take);
+  std::vector<AnnotationOfTake> rows = internal::AnnotationRows(catalogue);
+  std::erase_if(rows, [&](const AnnotationOfTake& row) { return !takes.contains(row.take); });
+  for (AnnotationOfTake& row : rows) row.annotation.path = takes.at(row.take)->path;
+  return rows;
+}
+
+std::string NumberText(const std::optional<double>& number) {
+  return number ? ToShortestText(*number) : std::string();
+}
+
+}  // namespace
+
+std::vector<AnnotationRow> ParseAnnotationTable(std::string_view text, const fs::path& file) {
+  const CsvTable table = ParseCsv(text, file);
+  const std::size_t path = table.Column("file");
+  const std::size_t class_name = table.Column("class");
+  std::vector<AnnotationRow> rows;
+  rows.reserve(table.rows.size());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    AnnotationRow row{.line = table.lines[i]};
+    StoredAnnotation& annotation = row.annotation;
+    annotation.path = table.rows[i][path];
+    annotation.class_name = table.rows[i][class_name];
+    annotation.first_frame = FrameField(table, i, "first_frame", 1);
+    annotation.last_frame = FrameField(table, i, "last_frame", annotation.first_frame);
+    annotation.cost = NumberField(table, i, "cost");
+    annotation.confidence = NumberField(table, i, "confidence");
+    annotation.template_name = Field(table, i, "template");
+    if (Trim(annotation.class_name).empty()) {
+      throw Error(ErrorCode::kMalformedFile, "an annotation without a class", {file, row.line});
+    }
+    if (annotation.class_name != kNoClass) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string FormatAnnotationTable(std::span<const StoredAnnotation> annotations,
+                                  std::span<const StoredTake> takes) {
+  std::map<fs::path, double> rates;
+  for (const StoredTake& take : takes) rates.emplace(take.path, take.rate_hz);
+  std::string text = "file,class,first_frame,last_frame,start_s,end_s,cost,confidence,template\n";
+  for (const StoredAnnotation& each : annotations) {
+    const auto rate = rates.find(each.path);
+    std::optional<double> start_s;
+    std::optional<double> end_s;
+    if (rate != rates.end()) {
+      start_s = static_cast<double>(each.first_frame - 1) / rate->second;
+      end_s = static_cast<double>(each.last_frame) / rate->second;
+    }
+    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", CsvField(each.path.string()),
+                        CsvField(each.class_name), each.first_frame, each.last_frame,
+                        NumberText(start_s), NumberText(end_s), NumberText(each.cost),
+                        NumberText(each.confidence), CsvField(each.template_name));
+  }
+  return text;
+}
+
+std::vector<StoredAnnotation> ListAnnotations(const fs::path& library, const TakeChoice& choice) {
+  const TakeLibrary opened(library);
+  const Catalogue catalogue(library, SqliteDatabase::Access::kRead);
+  std::vector<StoredAnnotation> annotations;
+  for (AnnotationOfTake& row : ChosenRows(catalogue, opened, choice)) {
+    annotations.push_back(std::move(row.annotation));
+  }
+  std::ranges::stable_sort(annotations, {}, [](const StoredAnnotation& each) {
+    return std::tie(each.path, each.first_frame, each.last_frame, each.class_name);
+  });
+  return annotations;
+}
+
+AnnotationReport StoreAnnotations(const fs::path& library, const TakeChoice& choice,
+                                  std::span<const AnnotationRow> rows, const fs::path& table) {
+  internal::CheckIsLibrary(library);
+  const internal::LibraryLock lock(library);
+  const TakeLibrary opened(library);
+  const internal::NamedRecordings recordings(ChooseTakes(opened, choice));
+  const Catalogue catalogue(library, SqliteDatabase::Access::kCreate);
+  const auto feature_sets = FeatureSetsOfTemplates(catalogue);
+  const std::int64_t now = internal::SecondsSince1970();
+  AnnotationReport report;
+  SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kWrite);
+  for (const AnnotationRow& row : rows) {
+    const Place place{table, row.line};
+    const fs::path& path = row.annotation.path;
+    const StoredTake* take = recordings.Find(path, RecordingName(path), place);
+    if (take == nullptr) {
+      ++report.passed_over;
+      continue;
+    }
+    internal::CheckTakeRow(*take, library);
+    CheckWithin(row.annotation, *take, place);
+    AnnotationOfTake stored{take->id, row.annotation};
+    const auto set = feature_sets.find(row.annotation.template_name);
+    stored.annotation.feature_set_hash = set == feature_sets.end() ? 0 : set->second;
+    stored.annotation.stored_s = now;
+    internal::PutAnnotation(catalogue, stored);
+    ++report.stored;
+  }
+  if (report.stored == 0) {
+    throw Error(ErrorCode::kNotFound, "annotates no recording that the library holds",
+                {.file = table});
+  }
+  transaction.Commit();
+  return report;
+}
+
+std::int64_t RemoveAnnotations(const fs::path& library, const TakeChoice& choice,
+                               std::span<const std::string> classes) {
+  internal::CheckIsLibrary(library);
+  const internal::LibraryLock lock(library);
+  const TakeLibrary opened(library);
+  const Catalogue catalogue(library, SqliteDatabase::Access::kCreate);
+  std::int64_t removed = 0;
+  SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kWrite);
+  for (const AnnotationOfTake& row : ChosenRows(catalogue, opened, choice)) {
+    const bool is_meant =
+        classes.empty() || std::ranges::find(classes, row.annotation.class_name) != classes.end();
+    if (!is_meant) continue;
+    internal::RemoveAnnotation(catalogue, row);
+    ++removed;
+  }
+  transaction.Commit();
+  return removed;
+}
+
+}  // namespace kinebase

@@ -1,0 +1,138 @@
+#include "kinebase/library/library_labels.h"
+
+#include <algorithm>
+#include <map>
+
+#include "fmt/format.h"
+#include "kinebase/core/text_scanner.h"
+#include "library/catalogue.h"
+#include "library/damage.h"
+#include "library/library_lock.h"
+#include "library/named_recordings.h"
+
+namespace kinebase {
+namespace {
+
+namespace fs = std::filesystem;
+using internal::Catalogue;
+using internal::SqliteDatabase;
+using internal::SqliteTransaction;
+
+void CheckChange(const LabelChange& change) {
+  for (const auto* labels : {&change.add, &change.remove}) {
+    for (const std::string& label : *labels) {
+      if (!Trim(label).empty()) continue;
+      throw Error(ErrorCode::kInvalidArgument, "a label is empty; name it by a word or more");
+    }
+  }
+  const bool is_whole = change.first_frame == 0 && change.last_frame == 0;
+  if (is_whole || (change.first_frame >= 1 && change.last_frame >= change.first_frame)) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              fmt::format("frames {}-{}: expected a first frame from 1 and a last one that is not "
+                          "before it",
+                          change.first_frame, change.last_frame));
+}
+
+void CheckWithin(const LabelChange& change, const StoredTake& take) {
+  if (change.last_frame <= take.frame_count) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              fmt::format("has {} frames; frames {}-{} are not all within it", take.frame_count,
+                          change.first_frame, change.last_frame),
+              {.file = take.path});
+}
+
+// Whether it is new.
+bool Add(const StoredLabel& label, StoredTake& take) {
+  if (std::ranges::find(take.labels, label) != take.labels.end()) return false;
+  take.labels.push_back(label);
+  return true;
+}
+
+std::size_t Remove(const LabelChange& change, StoredTake& take) {
+  return std::erase_if(take.labels, [&](const StoredLabel& label) {
+    const bool is_within = change.first_frame == 0 || (label.first_frame >= change.first_frame &&
+                                                       label.last_frame <= change.last_frame);
+    return is_within && std::ranges::find(change.remove, label.text) != change.remove.end();
+  });
+}
+
+void Store(const fs::path& library, std::span<const StoredTake> takes) {
+  if (takes.empty()) return;
+  Catalogue catalogue(library, SqliteDatabase::Access::kCreate);
+  SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kWrite);
+  for (const StoredTake& take : takes) catalogue.PutTake(take);
+  transaction.Commit();
+}
+
+StoredLabel ToStored(const SegmentLabel& label, std::int64_t frames, const Place& place) {
+  if (label.first_frame > frames) {
+    throw Error(ErrorCode::kInvalidArgument,
+                fmt::format("begins at frame {}, but {} has {} frames", label.first_frame,
+                            Quoted(label.recording), frames),
+                place);
+  }
+  if (Trim(label.label).empty()) {
+    throw Error(ErrorCode::kInvalidArgument, "the label is empty", place);
+  }
+  return {label.label, label.first_frame, std::min(label.last_frame, frames)};
+}
+
+}  // namespace
+
+LabelReport ChangeLabels(const fs::path& library, const TakeChoice& choice,
+                         const LabelChange& change) {
+  CheckChange(change);
+  internal::CheckIsLibrary(library);
+  const internal::LibraryLock lock(library);
+  const TakeLibrary opened(library);
+  LabelReport report;
+  std::vector<StoredTake> changed;
+  for (const StoredTake* chosen : ChooseTakes(opened, choice)) {
+    internal::CheckTakeRow(*chosen, library);
+    CheckWithin(change, *chosen);
+    StoredTake take = *chosen;
+    report.removed += static_cast<std::int64_t>(Remove(change, take));
+    for (const std::string& label : change.add) {
+      report.added += Add({label, change.first_frame, change.last_frame}, take) ? 1 : 0;
+    }
+    if (take.labels != chosen->labels) changed.push_back(std::move(take));
+  }
+  Store(library, changed);
+  report.takes = std::ssize(changed);
+  return report;
+}
+
+LabelReport AddSegmentLabels(const fs::path& library, const TakeChoice& choice,
+                             std::span<const SegmentLabel> labels, const fs::path& table) {
+  internal::CheckIsLibrary(library);
+  const internal::LibraryLock lock(library);
+  const TakeLibrary opened(library);
+  const internal::NamedRecordings recordings(ChooseTakes(opened, choice));
+  LabelReport report;
+  std::map<const StoredTake*, StoredTake> changed;
+  for (const SegmentLabel& label : labels) {
+    const Place place{table, label.line};
+    const StoredTake* take = recordings.Find({}, label.recording, place);
+    if (take == nullptr) {
+      ++report.passed_over;
+      continue;
+    }
+    internal::CheckTakeRow(*take, library);
+    const StoredLabel stored = ToStored(label, take->frame_count, place);
+    report.added += Add(stored, changed.try_emplace(take, *take).first->second) ? 1 : 0;
+  }
+  if (changed.empty()) {
+    throw Error(ErrorCode::kNotFound, "labels no recording that the library holds",
+                {.file = table});
+  }
+  std::vector<StoredTake> takes;
+  takes.reserve(changed.size());
+  for (auto& [before, after] : changed) {
+    if (after.labels.size() != before->labels.size()) takes.push_back(std::move(after));
+  }
+  Store(library, takes);
+  report.takes = std::ssize(takes);
+  return report;
+}
+
+}  // namespace kinebase
