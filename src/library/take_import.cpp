@@ -77,6 +77,11 @@ ContentKey KeyOf(const fs::path& file, const LoadOptions& options) {
       {motion.text(), text(skeleton), text(names), text(set), WayOfReading(file, options)});
 }
 
+ContentKey KeyOf(const ImportSource& source, const LoadOptions& options) {
+  if (source.make) return internal::KeyOf({"made", source.origin});
+  return KeyOf(source.file, options);
+}
+
 fs::path Resolved(const fs::path& file) {
   std::error_code unreachable;
   fs::path resolved = fs::canonical(file, unreachable);
@@ -195,7 +200,7 @@ class Importer {
 
   // Which take a file is, and whether it has to be read.
   void Recognise(const ImportSource& source, Arrival& arrival) const {
-    const ContentKey content = KeyOf(source.file, options_.load);
+    const ContentKey content = KeyOf(source, options_.load);
     const fs::path path = Resolved(source.file);
     const auto known = known_.find(path.native());
     const bool is_known = known != known_.end();
@@ -263,7 +268,7 @@ class Importer {
 
   void ReadContents(const ImportSource& source, Arrival& arrival) const {
     StoredTake& take = arrival.take;
-    Recording recording = LoadRecording(source.file, options_.load);
+    Recording recording = source.make ? source.make() : LoadRecording(source.file, options_.load);
     const TakeName listed = take.name;  // Empty for a new take.
     take.name = recording.name;
     Rename({.class_name = listed.class_name, .actor = listed.actor}, take);

@@ -19,6 +19,11 @@ struct ImportSource {
   std::filesystem::path file;
   std::string class_name;
   std::string actor;
+
+  // For a take that no file holds: gives it when the library lacks it. `file` is then the name that
+  // it is known by, and `origin` stands for its contents: all that they follow from.
+  std::function<Recording()> make = {};  // Called from any thread.
+  std::string origin = {};
 };
 
 enum class ImportState {
