@@ -1,5 +1,5 @@
 """Our readers beside those of other projects, on real recordings: same values first, then time and
-memory. Prints Markdown. scripts/bench-read calls it with what it needs.
+memory. Prints Markdown. scripts/bench calls it with what it needs.
 
 Each contender reads a file in a process of its own, once to see how much memory that takes and then
 some times against the clock; the contenders take turns, so that what else the machine does hits all.

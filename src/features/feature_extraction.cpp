@@ -3,186 +3,19 @@
 #include "kinebase/features/feature_extraction.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <utility>
 
+#include "features/feature_block.h"
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
-#include "kinebase/features/smoothing.h"
 #include "kinebase/motion/motion_editing.h"
 
 namespace kinebase {
 namespace {
 
-using Eigen::Vector3d;
-
-// Not Eigen's normalized(): that leaves a zero vector zero, and a direction that does not exist
-// must give NaN, which passes no test.
-Vector3d Unit(const Vector3d& v) { return v / v.norm(); }
-
-// Unlike std::min and std::max these never lose a NaN: where a joint is missing, so is what is
-// measured by it.
-double Smaller(double a, double b) { return a < b || std::isnan(a) ? a : b; }
-double Larger(double a, double b) { return a > b || std::isnan(a) ? a : b; }
-
-double AngleDegrees(const Vector3d& a, const Vector3d& b) {
-  const double cosine = a.dot(b) / (a.norm() * b.norm());
-  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
-}
-
-// One term of a feature over a whole recording.
-class TermEvaluator {
- public:
-  TermEvaluator(const JointTrajectories& joints, const FeatureTerm& term)
-      : joints_(joints), term_(term), frames_(joints.frame_count()) {}
-
-  std::vector<double> Evaluate() const {
-    std::vector<double> values = Raw();
-    for (double& value : values) {
-      value = (term_.absolute ? std::abs(value) : value) * term_.factor;
-    }
-    return values;
-  }
-
- private:
-  const Vector3d& At(int frame, std::size_t joint) const {
-    return joints_.at(frame, term_.joints[joint]);
-  }
-
-  template <typename Function>
-  std::vector<double> ForEachFrame(Function function) const {
-    std::vector<double> values(static_cast<std::size_t>(frames_));
-    for (int frame = 0; frame < frames_; ++frame) {
-      values[static_cast<std::size_t>(frame)] = function(frame);
-    }
-    return values;
-  }
-
-  std::vector<double> Raw() const {
-    switch (term_.type) {
-      case TermType::kPlane:
-        return ForEachFrame([&](int t) { return PlaneNormal(t).dot(At(t, 3) - At(t, 2)); });
-      case TermType::kNormalPlane:
-        return ForEachFrame([&](int t) { return Direction(t).dot(At(t, 3) - At(t, 2)); });
-      case TermType::kAngle:
-        return ForEachFrame(
-            [&](int t) { return AngleDegrees(At(t, 0) - At(t, 1), At(t, 2) - At(t, 3)); });
-      case TermType::kAngleWithUp:
-        return ForEachFrame(
-            [&](int t) { return AngleDegrees(At(t, 1) - At(t, 0), Vector3d::UnitY()); });
-      case TermType::kNormalMove:
-        return Move([&](int t) { return Direction(t); });
-      case TermType::kPlaneMove:
-        return Move([&](int t) { return PlaneNormal(t); });
-      case TermType::kFast:
-        return Fast();
-      case TermType::kApproach:
-        return Approach();
-      case TermType::kHeight:
-        return ForEachFrame([&](int t) { return At(t, 0).y() - LowestY(t); });
-      case TermType::kHeightExtent:
-        return ForEachFrame([&](int t) { return HighestY(t) - LowestY(t); });
-      case TermType::kGroundExtent:
-        return ForEachFrame([&](int t) { return GroundExtent(t); });
-    }
-    return {};
-  }
-
-  Vector3d Direction(int t) const { return Unit(At(t, 1) - At(t, 0)); }
-  Vector3d PlaneNormal(int t) const {
-    return Unit((At(t, 0) - At(t, 2)).cross(At(t, 1) - At(t, 2)));
-  }
-
-  // Smoothed velocity of a moving point, cm/s, one array an axis.
-  template <typename Function>
-  std::array<std::vector<double>, 3> SmoothedVelocity(Function position) const {
-    std::array<std::vector<double>, 3> velocity;
-    for (auto& axis : velocity) axis.resize(static_cast<std::size_t>(frames_));
-    for (int t = 0; t < frames_; ++t) {
-      // The last difference is repeated: there is no sample after the last.
-      const int from = std::max(0, std::min(t, frames_ - 2));
-      const Vector3d step = position(std::min(from + 1, frames_ - 1)) - position(from);
-      for (int axis = 0; axis < 3; ++axis) velocity[axis][static_cast<std::size_t>(t)] = step[axis];
-    }
-    const int width = BoxWidth(term_.window_ms, joints_.rate_hz);
-    for (auto& axis : velocity) {
-      axis = BoxFilter(axis, width);
-      for (double& value : axis) value *= joints_.rate_hz;
-    }
-    return velocity;
-  }
-
-  template <typename Normal>
-  std::vector<double> Move(Normal normal) const {
-    const auto v = SmoothedVelocity([&](int t) { return Vector3d(At(t, 3) - At(t, 2)); });
-    return ForEachFrame([&](int t) {
-      const auto i = static_cast<std::size_t>(t);
-      return normal(t).dot(Vector3d(v[0][i], v[1][i], v[2][i]));
-    });
-  }
-
-  std::vector<double> Fast() const {
-    const auto v = SmoothedVelocity([&](int t) { return At(t, 0); });
-    return ForEachFrame([&](int t) {
-      const auto i = static_cast<std::size_t>(t);
-      return Vector3d(v[0][i], v[1][i], v[2][i]).norm();
-    });
-  }
-
-  std::vector<double> Approach() const {
-    const auto v = SmoothedVelocity([&](int t) { return Vector3d(At(t, 3) - At(t, 2)); });
-    return ForEachFrame([&](int t) {
-      const auto i = static_cast<std::size_t>(t);
-      const Vector3d towards = Unit(At(t, 2) - At(t, 3));
-      const Vector3d sideways = Unit(At(t, 0) - At(t, 1));
-      return Vector3d(v[0][i], v[1][i], v[2][i]).dot(towards) * std::abs(towards.dot(sideways));
-    });
-  }
-
-  double LowestY(int t) const {
-    double low = std::numeric_limits<double>::infinity();
-    for (int j = 0; j < kStandardJointCount; ++j) {
-      const auto joint = static_cast<StandardJoint>(j);
-      if (std::ranges::find(term_.ignored_joints, joint) != term_.ignored_joints.end()) continue;
-      low = Smaller(low, joints_.at(t, joint).y());
-    }
-    return low;
-  }
-
-  double HighestY(int t) const {
-    double high = -std::numeric_limits<double>::infinity();
-    for (int j = 0; j < kStandardJointCount; ++j) high = Larger(high, joints_.at(t, j).y());
-    return high;
-  }
-
-  double GroundExtent(int t) const {
-    std::array<Vector3d, kStandardJointCount> points;
-    std::size_t count = 0;
-    if (term_.joints.empty()) {
-      for (int j = 0; j < kStandardJointCount; ++j) points[count++] = joints_.at(t, j);
-    } else {
-      for (const StandardJoint joint : term_.joints) {
-        if (count < points.size()) points[count++] = joints_.at(t, joint);
-      }
-    }
-    double largest = 0;
-    for (std::size_t a = 0; a < count; ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        const double dx = points[a].x() - points[b].x();
-        const double dz = points[a].z() - points[b].z();
-        largest = Larger(largest, dx * dx + dz * dz);
-      }
-    }
-    return std::sqrt(largest);
-  }
-
-  const JointTrajectories& joints_;
-  const FeatureTerm& term_;
-  int frames_;
-};
+using internal::BlockValues;
+using internal::FeatureBlock;
+using internal::kBlockSize;
 
 void CheckStandardJoints(const JointTrajectories& joints) {
   if (joints.joint_count != kStandardJointCount) {
@@ -203,38 +36,58 @@ const JointTrajectories& AtRate(const JointTrajectories& joints, double rate_hz,
   return storage;
 }
 
-std::vector<double> Evaluate(const JointTrajectories& joints, const Feature& feature) {
-  std::vector<double> values = TermEvaluator(joints, feature.terms.front()).Evaluate();
-  for (std::size_t i = 1; i < feature.terms.size(); ++i) {
-    const std::vector<double> term = TermEvaluator(joints, feature.terms[i]).Evaluate();
-    for (std::size_t t = 0; t < values.size(); ++t) {
-      values[t] = feature.combination == TermCombination::kSum ? values[t] + term[t]
-                                                               : Smaller(values[t], term[t]);
-    }
-  }
-  return values;
-}
-
 double LengthInFirstFrame(const JointTrajectories& joints, const BodyLength& length) {
   double sum = 0;
   for (const auto& [a, b] : length.segments) sum += (joints.at(0, a) - joints.at(0, b)).norm();
   return sum;
 }
 
-bool Passes(double value, ThresholdTest test, const Threshold& threshold, double unit) {
-  switch (test) {
-    case ThresholdTest::kAbove:
-      return value > threshold.low * unit;
-    case ThresholdTest::kAtLeast:
-      return value >= threshold.low * unit;
-    case ThresholdTest::kBelow:
-      return value < threshold.low * unit;
-    case ThresholdTest::kAtMost:
-      return value <= threshold.low * unit;
-    case ThresholdTest::kInside:
-      return value >= threshold.low * unit && value <= threshold.high * unit;
+// Whether a feature holds, from one sample to the next.
+class FeatureHysteresis {
+ public:
+  FeatureHysteresis(const Feature& feature, double unit)
+      : test_(feature.test),
+        strong_{feature.strong.low * unit, feature.strong.high * unit},
+        weak_{feature.weak.low * unit, feature.weak.high * unit} {}
+
+  bool Next(double value) {
+    holds_ = Passes(value, holds_ ? weak_ : strong_);
+    return holds_;
   }
-  return false;
+
+ private:
+  [[nodiscard]] bool Passes(double value, const Threshold& threshold) const {
+    switch (test_) {
+      case ThresholdTest::kAbove:
+        return value > threshold.low;
+      case ThresholdTest::kAtLeast:
+        return value >= threshold.low;
+      case ThresholdTest::kBelow:
+        return value < threshold.low;
+      case ThresholdTest::kAtMost:
+        return value <= threshold.low;
+      case ThresholdTest::kInside:
+        return value >= threshold.low && value <= threshold.high;
+    }
+    return false;
+  }
+
+  ThresholdTest test_;
+  Threshold strong_;
+  Threshold weak_;
+  bool holds_ = false;
+};
+
+std::vector<FeatureHysteresis> BeforeFirstSample(const JointTrajectories& joints,
+                                                 const FeatureSet& features) {
+  std::vector<FeatureHysteresis> states;
+  states.reserve(features.features.size());
+  for (const Feature& feature : features.features) {
+    const auto length = static_cast<std::size_t>(feature.length);
+    states.emplace_back(
+        feature, feature.length < 0 ? 1 : LengthInFirstFrame(joints, features.lengths[length]));
+  }
+  return states;
 }
 
 }  // namespace
@@ -248,8 +101,17 @@ std::vector<double> FeatureValues(const JointTrajectories& standard_joints,
                             features.feature_count() - 1));
   }
   JointTrajectories storage;
-  return Evaluate(AtRate(standard_joints, features.rate_hz, storage),
-                  features.features[static_cast<std::size_t>(feature)]);
+  const JointTrajectories& joints = AtRate(standard_joints, features.rate_hz, storage);
+  const Feature& row = features.features[static_cast<std::size_t>(feature)];
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(joints.frame_count()));
+  FeatureBlock block(joints, {&row, 1});
+  for (int first = 0; first < joints.frame_count(); first += kBlockSize) {
+    block.MoveTo(first);
+    const BlockValues some = block.Evaluate(row);
+    values.insert(values.end(), some.begin(), some.end());
+  }
+  return values;
 }
 
 void CheckColumnRate(const FeatureSet& features, double rate_hz) {
@@ -275,20 +137,19 @@ FeatureMatrix ExtractFeatures(const JointTrajectories& standard_joints, const Fe
   const auto samples = static_cast<std::size_t>(joints.frame_count());
   FeatureMatrix matrix{.rate_hz = rate_hz, .feature_count = features.feature_count()};
   matrix.columns.assign((samples + step - 1) / step, 0);
-  for (int row = 0; row < features.feature_count(); ++row) {
-    const Feature& feature = features.features[static_cast<std::size_t>(row)];
-    const double unit =
-        feature.length < 0
-            ? 1
-            : LengthInFirstFrame(joints,
-                                 features.lengths[static_cast<std::size_t>(feature.length)]);
-    const std::vector<double> values = Evaluate(joints, feature);
-    // Hysteresis runs over all samples: what happens between two columns counts.
-    bool state = false;
-    for (std::size_t t = 0; t < samples; ++t) {
-      state = state ? Passes(values[t], feature.test, feature.weak, unit)
-                    : Passes(values[t], feature.test, feature.strong, unit);
-      if (state && t % step == 0) matrix.columns[t / step] |= std::uint64_t{1} << row;
+  std::vector<FeatureHysteresis> states = BeforeFirstSample(joints, features);
+  FeatureBlock block(joints, features.features);
+  for (int first = 0; first < joints.frame_count(); first += kBlockSize) {
+    block.MoveTo(first);
+    for (std::size_t row = 0; row < states.size(); ++row) {
+      const BlockValues values = block.Evaluate(features.features[row]);
+      // Hysteresis runs over all samples: what happens between two columns counts.
+      auto t = static_cast<std::size_t>(first);
+      for (const double value : values) {
+        const bool holds = states[row].Next(value);
+        if (holds && t % step == 0) matrix.columns[t / step] |= std::uint64_t{1} << row;
+        ++t;
+      }
     }
   }
   return matrix;

@@ -1,19 +1,16 @@
 #include "kinebase/features/smoothing.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 namespace kinebase {
-namespace {
 
-// Index of a sample in a signal that is reflected at its ends, border samples repeated.
-std::ptrdiff_t Reflected(std::ptrdiff_t index, std::ptrdiff_t count) {
+std::ptrdiff_t ReflectedSample(std::ptrdiff_t index, std::ptrdiff_t count) {
   const std::ptrdiff_t period = 2 * count;
   const std::ptrdiff_t wrapped = ((index % period) + period) % period;
   return wrapped < count ? wrapped : period - 1 - wrapped;
 }
-
-}  // namespace
 
 int BoxWidth(double window_ms, double rate_hz) {
   return std::max(1, static_cast<int>(std::ceil(window_ms * rate_hz / 1000)));
@@ -26,16 +23,31 @@ std::vector<double> BoxFilter(std::span<const double> signal, int width) {
   std::vector<double> padded(signal.size() + static_cast<std::size_t>(width) - 1);
   for (std::ptrdiff_t i = 0; i < std::ssize(padded); ++i) {
     padded[static_cast<std::size_t>(i)] =
-        signal[static_cast<std::size_t>(Reflected(i - before, count))];
+        signal[static_cast<std::size_t>(ReflectedSample(i - before, count))];
   }
-  // A sum for each sample anew, not a running one: no error builds up along a long take, and the
-  // loop over samples is the inner one, which vectorises.
-  std::vector<double> out(signal.size(), 0.0);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k) {
-    for (std::size_t t = 0; t < out.size(); ++t) out[t] += padded[t + k];
-  }
-  for (double& value : out) value /= width;
+  std::vector<double> out(signal.size());
+  BoxFilterPadded(padded, width, out);
   return out;
+}
+
+void BoxFilterPadded(std::span<const double> padded, int width, std::span<double> out) {
+  // A sum for each sample anew, not a running one: no error builds up along a long take. Several
+  // samples side by side keep their sums in registers.
+  constexpr std::size_t kSideBySide = 8;
+  using Some = Eigen::Array<double, kSideBySide, 1>;
+  const auto count = static_cast<std::size_t>(width);
+  std::size_t t = 0;
+  for (; t + kSideBySide <= out.size(); t += kSideBySide) {
+    Some sums = Some::Zero();
+    for (std::size_t k = 0; k < count; ++k) sums += Eigen::Map<const Some>(&padded[t + k]);
+    Eigen::Map<Some> means(&out[t]);
+    means = sums / width;
+  }
+  for (; t < out.size(); ++t) {
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) sum += padded[t + k];
+    out[t] = sum / width;
+  }
 }
 
 }  // namespace kinebase

@@ -81,6 +81,11 @@ ContentKey KeyOf(const fs::path& file, const LoadOptions& options) {
       {motion.text(), text(skeleton), text(names), text(set), WayOfReading(file, options)});
 }
 
+ContentKey KeyOf(const ImportSource& source, const LoadOptions& options) {
+  if (source.make) return internal::KeyOf({"made", source.origin});
+  return KeyOf(source.file, options);
+}
+
 // A file once, however often it is named: what the first says of it that says anything.
 std::vector<ImportSource> WithoutRepeats(std::span<const ImportSource> sources) {
   std::vector<ImportSource> unique;
@@ -219,7 +224,7 @@ class Importer {
 
   // Which take a file is, and whether it has to be read.
   void Recognise(const ImportSource& source, Arrival& arrival) const {
-    const ContentKey content = KeyOf(source.file, options_.load);
+    const ContentKey content = KeyOf(source, options_.load);
     const fs::path path = internal::Resolved(source.file);
     const auto known = known_.find(path.native());
     const bool is_known = known != known_.end();
@@ -290,7 +295,7 @@ class Importer {
   void ReadContents(const ImportSource& source, Arrival& arrival) const {
     const internal::MemoryGate::Pass pass(reading_, kBytesForAByte * SizeOf(source.file));
     StoredTake& take = arrival.take;
-    Recording recording = LoadRecording(source.file, options_.load);
+    Recording recording = source.make ? source.make() : LoadRecording(source.file, options_.load);
     const TakeName listed = take.name;  // Empty for a new take.
     take.name = recording.name;
     Rename({.class_name = listed.class_name, .actor = listed.actor}, take);

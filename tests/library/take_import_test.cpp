@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -14,6 +15,7 @@
 #include "kinebase/library/library_upkeep.h"
 #include "kinebase/library/segment_file.h"
 #include "kinebase/library/take_library.h"
+#include "kinebase/motion/kinematics.h"
 #include "kinebase/motion/motion_editing.h"
 #include "library/made_up_takes.h"
 
@@ -352,6 +354,61 @@ TEST(Import, LeavesAStrangersFolderAsItIs) {
   EXPECT_THAT(test::ErrorOf([&] { takes.Import(); }).what(), HasSubstr("such as trip.segment"));
   EXPECT_THAT(FilesBelow(takes.library()), ElementsAre("segments"));
   EXPECT_EQ(test::ReadText(takes.library() / "segments" / "trip.segment"), "of somebody");
+}
+
+// Takes that no file holds, made of one figure; counts how often they are.
+class MadeSources {
+ public:
+  explicit MadeSources(const std::string& version) {
+    for (unsigned i = 0; i < 3; ++i) {
+      ImportSource source;
+      source.file = "/nowhere/take_" + std::to_string(i);
+      source.origin = version + ' ' + std::to_string(i);
+      source.make = [this, i] {
+        ++made_;
+        Recording recording;
+        recording.format = "made";
+        recording.name.actor = "xx";
+        recording.motion = test::SmoothMotion(test::FigureSkeleton(), i, 50, 120);
+        return recording;
+      };
+      sources_.push_back(std::move(source));
+    }
+  }
+
+  [[nodiscard]] const std::vector<ImportSource>& sources() const { return sources_; }
+  [[nodiscard]] int made() const { return made_; }
+
+ private:
+  std::vector<ImportSource> sources_;
+  std::atomic<int> made_ = 0;
+};
+
+TEST(Import, TakesWhatIsMadeInMemoryAsItTakesFiles) {
+  const test::TemporaryFolder folder;
+  const fs::path library = folder.path() / "library";
+  const ImportOptions options = MadeUpTakes::Options();
+  const MadeSources first("1");
+  EXPECT_EQ(ImportTakes(library, first.sources(), options).added, 3);
+  const TakeLibrary stored(library);
+  ASSERT_THAT(stored.takes(), SizeIs(3));
+  for (unsigned i = 0; i < 3; ++i) {
+    const StoredTake& take = stored.takes()[i];
+    EXPECT_EQ(take.path, "/nowhere/take_" + std::to_string(i));
+    EXPECT_EQ(take.format, "made");
+    EXPECT_EQ(take.name.actor, "xx");
+    const FeatureMatrix truth = ExtractFeatures(
+        StandardJoints(test::SmoothMotion(test::FigureSkeleton(), i, 50, 120)), options.features);
+    EXPECT_TRUE(std::ranges::equal(stored.Columns(take, options.features.hash, 30), truth.columns));
+  }
+  // What has the same origin is not made again; another origin is other contents.
+  const MadeSources again("1");
+  EXPECT_EQ(ImportTakes(library, again.sources(), options).unchanged, 3);
+  EXPECT_EQ(again.made(), 0);
+  const MadeSources other("2");
+  EXPECT_EQ(ImportTakes(library, other.sources(), options).updated, 3);
+  EXPECT_EQ(other.made(), 3);
+  EXPECT_THAT(VerifyLibrary(library).damaged, IsEmpty());
 }
 
 }  // namespace

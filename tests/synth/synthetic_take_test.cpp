@@ -103,5 +103,47 @@ TEST(SyntheticTake, ChoosesAmongTheClassesThatAreNamed) {
             ErrorCode::kNotFound);
 }
 
+TEST(LongSyntheticTake, HasExactlyTheFramesThatWereAskedForAtAnyRate) {
+  const SyntheticActor actor = MakeSyntheticActor(1, kSeed);
+  for (const double rate_hz : {30.0, 120.0}) {
+    const SyntheticTake take =
+        MakeLongSyntheticTake(actor, {.duration_s = 60, .rate_hz = rate_hz, .seed = kSeed});
+    EXPECT_EQ(take.motion.frame_count, 60 * rate_hz);
+    EXPECT_EQ(take.motion.rate_hz, rate_hz);
+    EXPECT_GT(take.segments.size(), 8U);
+    EXPECT_LE(take.segments.back().last_frame, take.motion.frame_count);
+  }
+  EXPECT_EQ(MakeLongSyntheticTake(actor, {.duration_s = 1.0 / 120}).motion.frame_count, 1);
+}
+
+TEST(LongSyntheticTake, IsTheSameMotionWithFewerFramesAtALowerRate) {
+  const SyntheticActor actor = MakeSyntheticActor(2, kSeed);
+  const auto take = [&](double rate_hz) {
+    return MakeLongSyntheticTake(actor, {.duration_s = 20, .rate_hz = rate_hz, .seed = kSeed});
+  };
+  const SyntheticTake fine = take(120);
+  const SyntheticTake coarse = take(30);
+  ASSERT_EQ(coarse.segments.size(), fine.segments.size());
+  for (std::size_t i = 0; i < fine.segments.size(); ++i) {
+    EXPECT_EQ(coarse.segments[i].class_name, fine.segments[i].class_name);
+    // Every piece before it is rounded to frames.
+    EXPECT_NEAR(coarse.segments[i].first_frame / 30.0, fine.segments[i].first_frame / 120.0,
+                0.05 * static_cast<double>(i + 3));
+  }
+}
+
+TEST(LongSyntheticTake, RefusesWhatIsNoTake) {
+  const SyntheticActor actor = MakeSyntheticActor(0, kSeed);
+  for (const LongTakeOptions& options : {LongTakeOptions{.duration_s = 0},
+                                         {.duration_s = -5},
+                                         {.duration_s = std::nan("")},
+                                         {.duration_s = 1e9},
+                                         {.rate_hz = 0},
+                                         {.rate_hz = 1e9}}) {
+    EXPECT_EQ(ErrorOf([&] { (void)MakeLongSyntheticTake(actor, options); }).code(),
+              ErrorCode::kInvalidArgument);
+  }
+}
+
 }  // namespace
 }  // namespace kinebase::test

@@ -21,6 +21,11 @@ struct ImportSource {
   std::string class_name;
   std::string actor;
   std::string description;  // In words; empty: what is known of HDM05 (library/descriptions.h).
+
+  // For a take that no file holds: gives it when the library lacks it. `file` is then the name that
+  // it is known by, and `origin` stands for its contents: all that they follow from.
+  std::function<Recording()> make = {};  // Called from any thread.
+  std::string origin = {};
 };
 
 enum class ImportState {
