@@ -48,7 +48,8 @@ Json LabelsAsJson(const StoredTake& take) {
 }
 
 std::string KeyText(const ContentKey& key) {
-  return key == ContentKey() ? "" : fmt::format("{:016x}{:016x}", key[1], key[0]);
+  const bool is_known = key[0] != 0 || key[1] != 0;
+  return is_known ? fmt::format("{:016x}{:016x}", key[1], key[0]) : "";
 }
 
 Json ToJson(const StoredTake& take) {
@@ -162,6 +163,7 @@ void PrintDamage(const std::vector<TakeFailure>& damaged) {
 // What is wrong beside the takes, with what to do.
 std::vector<std::string> OtherDamage(const VerifyReport& report) {
   std::vector<std::string> lines;
+  lines.reserve(report.damaged_records.size() + 1);
   for (const std::string& record : report.damaged_records) {
     lines.push_back("catalogue: " + record + " is damaged; remove it and add it again");
   }
@@ -238,8 +240,10 @@ int Export(const LibraryOptions& options) {
   if (options.common.json && is_printed) throw UsageError("--json needs -o FILE");
   if (!is_printed) CheckWritable(options.output, options.common.overwrite());
   const TakeLibrary library(options.library);
+  const std::vector<const StoredTake*> chosen = ChooseTakes(library, options.choice);
   std::vector<StoredTake> takes;
-  for (const StoredTake* take : ChooseTakes(library, options.choice)) takes.push_back(*take);
+  takes.reserve(chosen.size());
+  for (const StoredTake* take : chosen) takes.push_back(*take);
   WriteTextOrPrint(options.output, FormatTakeList(takes), options.common);
   if (is_printed) return kDone;
   if (options.common.json) {

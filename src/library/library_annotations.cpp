@@ -59,6 +59,16 @@ std::map<std::string, std::uint64_t> FeatureSetsOfTemplates(const Catalogue& cat
   return sets;
 }
 
+// Where nobody names the template it is the one that the class is called after, if there is one.
+void NameTemplate(const std::map<std::string, std::uint64_t>& feature_sets,
+                  StoredAnnotation& annotation) {
+  const bool is_named = !annotation.template_name.empty();
+  const auto set = feature_sets.find(is_named ? annotation.template_name : annotation.class_name);
+  if (set == feature_sets.end()) return;
+  annotation.template_name = set->first;
+  annotation.feature_set_hash = set->second;
+}
+
 void CheckWithin(const StoredAnnotation& annotation, const StoredTake& take, const Place& place) {
   if (annotation.last_frame <= take.frame_count) return;
   throw Error(
@@ -133,8 +143,10 @@ std::string FormatAnnotationTable(std::span<const StoredAnnotation> annotations,
 std::vector<StoredAnnotation> ListAnnotations(const fs::path& library, const TakeChoice& choice) {
   const TakeLibrary opened(library);
   const Catalogue catalogue(library, SqliteDatabase::Access::kRead);
+  std::vector<AnnotationOfTake> rows = ChosenRows(catalogue, opened, choice);
   std::vector<StoredAnnotation> annotations;
-  for (AnnotationOfTake& row : ChosenRows(catalogue, opened, choice)) {
+  annotations.reserve(rows.size());
+  for (AnnotationOfTake& row : rows) {
     annotations.push_back(std::move(row.annotation));
   }
   std::ranges::stable_sort(annotations, {}, [](const StoredAnnotation& each) {
@@ -165,8 +177,7 @@ AnnotationReport StoreAnnotations(const fs::path& library, const TakeChoice& cho
     internal::CheckTakeRow(*take, library);
     CheckWithin(row.annotation, *take, place);
     AnnotationOfTake stored{take->id, row.annotation};
-    const auto set = feature_sets.find(row.annotation.template_name);
-    stored.annotation.feature_set_hash = set == feature_sets.end() ? 0 : set->second;
+    NameTemplate(feature_sets, stored.annotation);
     stored.annotation.stored_s = now;
     internal::PutAnnotation(catalogue, stored);
     ++report.stored;

@@ -234,7 +234,14 @@ class CrashingChange : public CrashingImport {
     EXPECT_EQ(RunKinebase(ArgumentsOfAll()).exit_code, 0);
     EXPECT_EQ(Change({"label", "--add", "gym", "--actors", "sa"}).exit_code, 0);
     EXPECT_EQ(Change({"remove", "--actors", "sb", "--classes", "squat1Reps"}).exit_code, 0);
-    fs::copy(library(), prepared_, fs::copy_options::recursive);
+    Prepare(library());
+  }
+
+  // What each change begins with.
+  void Prepare(const fs::path& folder) {
+    fs::remove_all(prepared_);
+    fs::copy(folder, prepared_, fs::copy_options::recursive);
+    RestorePrepared();
     before_ = Takes();
   }
 
@@ -316,6 +323,11 @@ class CrashingChange : public CrashingImport {
 
 TEST_F(CrashingChange, OfLabelsIsMadeWholeOrNotAtAll) {
   ExpectWholeOrNotAtAll({"label", "--add", "warm-up", "--remove", "gym", "--actors", "sa"});
+}
+
+TEST_F(CrashingChange, OfALibraryOfVersion1IsMadeWholeOrNotAtAll) {
+  Prepare(fs::path(KINEBASE_SOURCE_DIR) / "tests" / "library" / "samples" / "library_v1");
+  ExpectWholeOrNotAtAll({"label", "--add", "gym", "--actors", "sa"});
 }
 
 TEST_F(CrashingChange, ByRemovingIsMadeWholeOrNotAtAll) {

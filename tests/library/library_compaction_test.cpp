@@ -47,6 +47,7 @@ class CompactedLibrary : public testing::Test {
       Content& content = contents[take.path.filename().string()];
       content.columns.assign(columns.begin(), columns.end());
       const JointTrajectories poses = library.Poses(take, hash, 30);
+      content.places.reserve(static_cast<std::size_t>(poses.frame_count()));
       for (int i = 0; i < poses.frame_count(); ++i) content.places.emplace_back(poses.at(i, 3));
     }
     return contents;

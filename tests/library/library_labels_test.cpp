@@ -3,10 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "kinebase/library/library_annotations.h"
+#include "kinebase/library/library_compaction.h"
+#include "kinebase/library/library_templates.h"
 #include "kinebase/library/library_upkeep.h"
+#include "library/library_lock.h"
 #include "library/made_up_takes.h"
 
 namespace kinebase {
@@ -81,6 +86,22 @@ TEST_F(LabelledLibrary, RefusesWhatMakesNoSenseAndChangesNothing) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_THAT(Labels(i), IsEmpty());
   EXPECT_EQ(ErrorOf([&] { Change({.add = {"gym"}}, {.names = {"nobody.amc"}}); }).code(),
             ErrorCode::kNotFound);
+}
+
+TEST_F(LabelledLibrary, IsLeftAloneWhileSomebodyElseWrites) {
+  const internal::LibraryLock lock(takes_.library());
+  const std::vector<std::function<void()>> changes = {
+      [&] { Change({.add = {"gym"}}); },
+      [&] { CompactLibrary(takes_.library()); },
+      [&] { StoreTemplates(takes_.library(), {}, Overwrite::kNo); },
+      [&] { RemoveAnnotations(takes_.library(), {}, {}); },
+  };
+  for (const auto& change : changes) {
+    const Error refused = ErrorOf(change);
+    EXPECT_EQ(refused.code(), ErrorCode::kIoFailure);
+    EXPECT_THAT(refused.what(), HasSubstr("is writing to this library"));
+  }
+  EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, IsEmpty());
 }
 
 TEST_F(LabelledLibrary, TakesLabelsFromTables) {

@@ -123,6 +123,15 @@ TEST_F(StoredAnnotationsTest, AreReplacedByThoseOfTheSameStretchAndTemplate) {
   EXPECT_THAT(VerifyLibrary(takes_.library()).damaged_records, IsEmpty());
 }
 
+TEST_F(StoredAnnotationsTest, AreOfTheTemplateThatTheClassIsCalledAfter) {
+  Store(first_ + ",waving,3,9,,,\n" + first_ + ",kick,3,9,,,\n");
+  const auto listed = List();
+  ASSERT_THAT(listed, SizeIs(2));
+  EXPECT_EQ(listed[0].template_name, "");  // kick
+  EXPECT_EQ(listed[1].template_name, "waving");
+  EXPECT_EQ(listed[1].feature_set_hash, LoadFeatureSet("bonn").hash);
+}
+
 TEST_F(StoredAnnotationsTest, GoWithTheirTakeOrByChoice) {
   Store(
       "HDM_xx_wave_001_120,wave,3,9,,,\nHDM_xx_wave_002_120,wave,3,9,,,\n"

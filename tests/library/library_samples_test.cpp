@@ -15,6 +15,7 @@
 #include "kinebase/library/library_upkeep.h"
 #include "kinebase/library/take_library.h"
 #include "kinebase/search/run_lists.h"
+#include "library/catalogue.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
 
@@ -103,6 +104,16 @@ TEST_F(LibrarySample, OfVersion1BecomesVersion2WhenItIsChanged) {
   const VerifyReport report = VerifyLibrary(library());
   EXPECT_THAT(report.damaged, IsEmpty());
   EXPECT_FALSE(report.words_are_damaged);
+}
+
+// Whoever began to read goes on with what version 1 has.
+TEST_F(LibrarySample, OfVersion1IsReadWhileItBecomesVersion2) {
+  const internal::Catalogue reader(library(), internal::SqliteDatabase::Access::kRead);
+  ChangeLabels(library(), {}, {.add = {"gym"}});
+  EXPECT_EQ(reader.version(), 1);
+  EXPECT_THAT(reader.Takes(), SizeIs(2));
+  EXPECT_THAT(reader.FindText("squat"), SizeIs(1));
+  EXPECT_THAT(TakeLibrary(library()).Choose({.labels = {"gym"}}), SizeIs(2));
 }
 
 class LibrarySample2 : public LibrarySample {

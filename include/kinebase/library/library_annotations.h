@@ -58,7 +58,8 @@ struct AnnotationReport {
                                                             const TakeChoice& choice);
 
 // Adds the rows to the chosen takes that they name, by path or by the name of the file. One of the
-// same stretch, class and template is replaced.
+// same stretch, class and template is replaced. A row without a template has that of the library
+// that is called as the class is, for annotate calls classes so.
 //
 // table   For messages.
 // Errors  NotFound if no row is of any of the takes; InvalidArgument with the line for a name that

@@ -44,8 +44,8 @@ struct Removal {
 // taken. Says which. All or none, whatever happens.
 //
 // Errors  Those of TakeLibrary and ChooseTakes; InvalidArgument if nothing was asked for; IoFailure
-//         if somebody else is writing. With `damaged`
-//         also IoFailure and Mismatch for a segment that may be sound, but cannot be read here.
+//         if somebody else is writing. With `damaged` also IoFailure and Mismatch for a segment
+//         that may be sound, but cannot be read here.
 std::vector<std::filesystem::path> RemoveTakes(const std::filesystem::path& library,
                                                const Removal& removal);
 
