@@ -114,7 +114,7 @@ TEST_F(UseOfALibrary, AnnotatesByPosesNearlyLikeItsFiles) {
   const Arguments annotate = Arguments{"annotate"} + ClassTemplates();
   const std::string expected = Output(annotate + Arguments{"--in", recordings_.folder()});
   const std::string found = Output(annotate + Arguments{"--library", library_});
-  ExpectNear(nlohmann::ordered_json::parse(found), nlohmann::ordered_json::parse(expected), 2e-3);
+  ExpectNear(nlohmann::ordered_json::parse(found), nlohmann::ordered_json::parse(expected), 1e-3);
 }
 
 TEST_F(UseOfALibrary, LearnsLikeFromItsFiles) {
