@@ -144,6 +144,15 @@ TEST_F(StoredTakes, CanBeLeftBeforeTheEnd) {
   EXPECT_EQ(visited, 2U);
 }
 
+TEST(Import, MakesSmallerBatchesWhereMemoryIsShort) {
+  const MadeUpTakes takes;
+  ImportOptions options = MadeUpTakes::Options();
+  options.memory_bytes = 1;
+  options.threads = 4;
+  EXPECT_EQ(takes.Import(options).added, 3);
+  EXPECT_THAT(TakeLibrary(takes.library()).segments(), SizeIs(3));
+}
+
 TEST(SourcesIn, ArePathsThatAreLibrariesAndTheFilesOfTheOthers) {
   const MadeUpTakes takes;
   takes.Import();
