@@ -29,6 +29,16 @@ CLI::Validator Check(std::string expected, Test test) {
   return validator.operation(check).non_modifying();
 }
 
+// "2G" in bytes.
+std::optional<std::int64_t> ParseSize(std::string text) {
+  try {
+    (void)CLI::AsSizeValue(false)(text);
+    return ParseInteger(text);
+  } catch (const CLI::Error&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 CLI::Validator PositiveNumber() {
@@ -85,16 +95,15 @@ CLI::Validator PictureFile() {
 
 CLI::Validator MemorySize() {
   const auto to_bytes = [](std::string& text) {
-    const std::string given = text;
-    std::uint64_t bytes = 0;
-    const bool is_size =
-        CLI::AsSizeValue(false)(text).empty() && CLI::detail::lexical_cast(text, bytes);
-    if (is_size && bytes >= kLeastMemoryBytes) return std::string();
-    text = given;
-    return fmt::format("takes a size of at least {}M, as 512M or 2G, not {}",
-                       kLeastMemoryBytes >> 20, Quoted(given));
+    const auto bytes = ParseSize(text);
+    if (!bytes || *bytes < kLeastMemoryBytes) {
+      return fmt::format("takes a size of at least {}M, as 512M or 2G, not {}",
+                         kLeastMemoryBytes >> 20, Quoted(text));
+    }
+    text = std::to_string(*bytes);
+    return std::string();
   };
-  return CLI::Validator(to_bytes, "");
+  return {to_bytes, ""};
 }
 
 CLI::Option* AddMemoryOption(CLI::App& command, std::uint64_t& bytes) {

@@ -78,8 +78,10 @@ class ListReader {
 };
 
 // The parts of `runs` where a feature is as it is wanted. No more of the list is read than matters.
-std::vector<Stretch> Intersect(std::span<const Stretch> runs, ListReader list, bool is_wanted) {
-  std::vector<Stretch> parts;
+// parts  Out; its memory is used again.
+void Intersect(std::span<const Stretch> runs, ListReader list, bool is_wanted,
+               std::vector<Stretch>& parts) {
+  parts.clear();
   auto run = runs.begin();
   while (run != runs.end() && list.Next()) {
     if (list.shows() != is_wanted) continue;
@@ -90,7 +92,6 @@ std::vector<Stretch> Intersect(std::span<const Stretch> runs, ListReader list, b
       if (run->last >= list.end()) break;
     }
   }
-  return parts;
 }
 
 // A column where a tested feature begins to disagree with the pattern, or ceases to.
@@ -163,10 +164,12 @@ std::vector<Stretch> RunLists::Find(const FeaturePattern& pattern, int recording
 
 std::vector<Stretch> RunLists::FindExactly(const FeaturePattern& pattern, int recording) const {
   std::vector<Stretch> found = {{recording, 0, column_count_ - 1}};
+  std::vector<Stretch> parts;
   for (std::uint64_t tested = pattern.tested; tested != 0 && !found.empty(); tested &= tested - 1) {
     const auto feature = static_cast<std::size_t>(std::countr_zero(tested));
     const bool is_wanted = ((pattern.ones >> feature) & 1U) != 0;
-    found = Intersect(found, {lists_.at(feature), column_count_}, is_wanted);
+    Intersect(found, {lists_.at(feature), column_count_}, is_wanted, parts);
+    found.swap(parts);
   }
   return found;
 }

@@ -3,7 +3,7 @@
 //
 // search/feature_index.h makes lists for whole patterns, in memory; here there is one for each
 // feature, and patterns are put together when somebody asks. So the lists are good for any pattern
-// and take no more than a fifth of the words. search/keyframe_index.h preselects by them.
+// and take a fifth of what the words do, or less. search/keyframe_index.h preselects by them.
 // Method: Müller, Röder & Clausen, "Efficient Content-Based Retrieval of Motion Capture Data",
 // SIGGRAPH 2005; Müller & Röder, "Motion Templates ...", SCA 2006, Sect. 5.4.
 //

@@ -1,0 +1,73 @@
+#include "kinebase/library/library_examples.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <vector>
+
+#include "library/made_up_takes.h"
+
+namespace kinebase {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ErrorOf;
+using test::MadeUpTakes;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+class LibraryExamples : public testing::Test {
+ protected:
+  LibraryExamples() {
+    ImportOptions options = MadeUpTakes::Options();
+    options.with_poses = true;
+    takes_.Import(options);
+  }
+
+  [[nodiscard]] ExampleRequest Request(std::int64_t memory_bytes) const {
+    return {.features = &features_, .memory_bytes = memory_bytes};
+  }
+
+  FeatureSet features_ = LoadFeatureSet("bonn");
+  MadeUpTakes takes_{8};
+};
+
+TEST_F(LibraryExamples, AreTheTakesThatHaveAClass) {
+  const TakeLibrary library(takes_.library());
+  const LabelledBatch batch = LoadLabelledTakes(library, {.actors = {"xx"}}, Request(1 << 30));
+  ASSERT_THAT(batch.clips, SizeIs(8));
+  EXPECT_EQ(batch.clips[0].class_name, "wave");
+  EXPECT_EQ(batch.clips[0].actor, "xx");
+  EXPECT_EQ(batch.clips[0].take.poses.column_count(), batch.clips[0].take.features.column_count());
+}
+
+TEST_F(LibraryExamples, ThatNeedMoreMemoryAreRefusedWithTheOption) {
+  const TakeLibrary library(takes_.library());
+  const Error error = ErrorOf([&] { (void)LoadLabelledTakes(library, {}, Request(1000)); });
+  EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(error.what(), HasSubstr("raise --memory"));
+}
+
+TEST_F(LibraryExamples, OfABackgroundAreAsManyAsFitAndAlwaysTheSame) {
+  const TakeLibrary library(takes_.library());
+  const BackgroundTakes all = LoadBackgroundTakes(library, {}, Request(1 << 30));
+  EXPECT_EQ(all.chosen, 8U);
+  const std::int64_t half = ExampleBytes(all.batch.takes) / 2;
+  const BackgroundTakes some = LoadBackgroundTakes(library, {}, Request(half));
+  EXPECT_EQ(some.available, 8U);
+  EXPECT_LT(some.chosen, 8U);
+  EXPECT_GE(some.chosen, 3U);
+  EXPECT_LE(ExampleBytes(some.batch.takes), half);
+  const BackgroundTakes again = LoadBackgroundTakes(library, {}, Request(half));
+  ASSERT_EQ(again.batch.takes.size(), some.batch.takes.size());
+  for (std::size_t i = 0; i < some.batch.takes.size(); ++i) {
+    EXPECT_EQ(again.batch.takes[i].path, some.batch.takes[i].path);
+  }
+  const std::set<fs::path> without = {fs::canonical(takes_.files()[3])};
+  EXPECT_EQ(LoadBackgroundTakes(library, without, Request(1 << 30)).chosen, 7U);
+}
+
+}  // namespace
+}  // namespace kinebase
