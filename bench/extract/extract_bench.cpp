@@ -178,6 +178,7 @@ std::vector<std::uint64_t> PlainFeatures(const JointTrajectories& joints, const 
   for (std::size_t row = 0; row < set.features.size(); ++row) {
     const Feature& feature = set.features[row];
     std::vector<PlainTerm> terms;
+    terms.reserve(feature.terms.size());
     for (const FeatureTerm& term : feature.terms) terms.emplace_back(joints, term);
     const double unit = UnitOf(joints, set, feature);
     bool state = false;
@@ -219,6 +220,7 @@ void CountFrames(benchmark::State& state) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   static std::vector<kinebase::FeatureSet> sets;
+  sets.reserve(kinebase::BuiltInFeatureSets().size());
   for (const std::string& name : kinebase::BuiltInFeatureSets()) {
     sets.push_back(kinebase::LoadFeatureSet(name));
   }

@@ -64,6 +64,7 @@ class Recordings {
     const fs::path root = fs::path(data != nullptr ? data : "../shared") / "data" / "cmu" / "135";
     fs::copy_file(root / "135.asf", folder_.path() / "135.asf");
     const std::string text = ReadText(root / "135_02.amc");
+    sources_.reserve(kCopies);
     for (int i = 0; i < kCopies; ++i) {
       const fs::path file = folder_.path() / ("135_" + std::to_string(i + 10) + ".amc");
       std::ofstream(file, std::ios::binary) << "# copy " << i << '\n' << text;

@@ -103,6 +103,7 @@ TemplateMatrix TakeTurnPlainly(std::span<const TemplateMatrix> matrices, std::si
                                Profile profile, double& largest_cost) {
   double largest = 0;
   std::vector<TemplateMatrix> warped;
+  warped.reserve(matrices.size());
   for (std::size_t i = 0; i < matrices.size(); ++i) {
     if (i == reference) {
       warped.push_back(matrices[i]);
@@ -125,6 +126,7 @@ LearnedMatrix LearnPlainly(std::span<const TemplateMatrix> performances,
   for (int round = 0; round < options.max_rounds; ++round) {
     double largest_cost = 0;
     std::vector<TemplateMatrix> next;
+    next.reserve(matrices.size());
     for (std::size_t i = 0; i < matrices.size(); ++i) {
       next.push_back(TakeTurnPlainly(matrices, i, options.profile, largest_cost));
     }

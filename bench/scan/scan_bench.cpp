@@ -166,15 +166,13 @@ void RegisterAll(int template_columns) {
   }
   const auto add_search = [&](const std::string& name, bool weighted, std::int64_t target,
                               int threads) {
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [=](benchmark::State& state) {
-                                   RunSearch(state,
-                                             weighted ? MakeWeightedTemplate(template_columns)
-                                                      : MakeTemplate(template_columns),
-                                             target, threads);
-                                 })
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime();
+    const auto run = [=](benchmark::State& state) {
+      const auto motion_template =
+          weighted ? MakeWeightedTemplate(template_columns) : MakeTemplate(template_columns);
+      RunSearch(state, motion_template, target, threads);
+    };
+    auto* added = benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
+    if (threads > 1) added->UseRealTime();
   };
   for (const std::int64_t target : SupportedDeltaTargets()) {
     const std::string name = DeltaTargetName(target) + columns;
@@ -199,8 +197,7 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(
         ("64 templates/threads=" + std::to_string(threads)).c_str(),
         [=](benchmark::State& state) { kinebase::RunManySearches(state, threads); })
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime();
+        ->Unit(benchmark::kMillisecond);
   }
   benchmark::RunSpecifiedBenchmarks();
 }

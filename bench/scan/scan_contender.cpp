@@ -44,6 +44,7 @@ std::vector<std::uint64_t> ReadWords(const char* path) {
 
 QuantizedTemplate TemplateOf(const std::vector<std::uint64_t>& words) {
   QuantizedTemplate made{.rate_hz = 30, .feature_count = kFeatures, .matching = Profile::kPaper};
+  made.columns.reserve(words.size());
   const std::uint64_t all = (std::uint64_t{1} << kFeatures) - 1;
   for (const std::uint64_t word : words) made.columns.push_back({all, word, 1.0 / kFeatures});
   return made;
@@ -125,8 +126,10 @@ void Run(char** arguments, int count) {
   const Scan scan(FindContender(arguments[1]), ReadWords(arguments[2]), ReadWords(arguments[3]));
   scan.CheckHits();
   std::vector<double> delta = scan.Delta();
+  const int runs = std::atoi(arguments[4]);
   std::vector<double> seconds;
-  for (int run = 0; run < std::atoi(arguments[4]); ++run) {
+  seconds.reserve(static_cast<std::size_t>(std::max(runs, 0)));
+  for (int run = 0; run < runs; ++run) {
     const double begin = ProcessorSeconds();
     delta = scan.Delta();
     seconds.push_back(ProcessorSeconds() - begin);

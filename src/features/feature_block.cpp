@@ -177,6 +177,7 @@ BlockValues FeatureBlock::HighestY() const {
 
 BlockValues FeatureBlock::GroundExtent(std::span<const StandardJoint> joints) const {
   std::vector<int> chosen;
+  chosen.reserve(std::max<std::size_t>(joints.size(), kStandardJointCount));
   for (const StandardJoint joint : joints) chosen.push_back(static_cast<int>(joint));
   for (int joint = 0; joints.empty() && joint < kStandardJointCount; ++joint) {
     chosen.push_back(joint);

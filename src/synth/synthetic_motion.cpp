@@ -258,6 +258,7 @@ SyntheticTake MakeLongSyntheticTake(const SyntheticActor& actor, const LongTakeO
                             options.rate_hz));
   }
   std::vector<const MotionClass*> classes;
+  classes.reserve(internal::MotionClasses().size());
   for (const MotionClass& each : internal::MotionClasses()) classes.push_back(&each);
   TakeBuilder builder(actor, options.number, options.seed, options.rate_hz);
   for (int i = 0; builder.frame_count() < frames; ++i) AppendNext(builder, classes, i);

@@ -44,6 +44,7 @@ TEST(SynthHours, MakesSoMuchMotionAndNoMore) {
   const TakeLibrary stored(library);
   ASSERT_EQ(stored.takes().size(), 3U);
   std::vector<std::int64_t> frames;
+  frames.reserve(stored.takes().size());
   for (const StoredTake& take : stored.takes()) {
     frames.push_back(take.frame_count);
     EXPECT_EQ(take.rate_hz, 30);
