@@ -4,6 +4,7 @@
 #include <map>
 
 #include "fmt/format.h"
+#include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "library/catalogue.h"
 #include "library/damage.h"
@@ -133,6 +134,19 @@ LabelReport AddSegmentLabels(const fs::path& library, const TakeChoice& choice,
   Store(library, takes);
   report.takes = std::ssize(takes);
   return report;
+}
+
+std::string FormatLabelTable(std::span<const StoredTake* const> takes) {
+  std::string text = "file,class,first_frame,last_frame\n";
+  for (const StoredTake* take : takes) {
+    for (const StoredLabel& label : take->labels) {
+      const bool is_whole = label.first_frame == 0;
+      text += fmt::format("{},{},{},{}\n", CsvField(take->path.string()), CsvField(label.text),
+                          is_whole ? 1 : label.first_frame,
+                          is_whole ? take->frame_count : label.last_frame);
+    }
+  }
+  return text;
 }
 
 }  // namespace kinebase
