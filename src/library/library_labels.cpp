@@ -75,7 +75,7 @@ StoredLabel ToStored(const SegmentLabel& label, std::int64_t frames, const Place
   if (Trim(label.label).empty()) {
     throw Error(ErrorCode::kInvalidArgument, "the label is empty", place);
   }
-  return {label.label, label.first_frame, std::min(label.last_frame, frames)};
+  return {std::string(Trim(label.label)), label.first_frame, std::min(label.last_frame, frames)};
 }
 
 }  // namespace
@@ -94,7 +94,8 @@ LabelReport ChangeLabels(const fs::path& library, const TakeChoice& choice,
     StoredTake take = *chosen;
     report.removed += static_cast<std::int64_t>(Remove(change, take));
     for (const std::string& label : change.add) {
-      report.added += Add({label, change.first_frame, change.last_frame}, take) ? 1 : 0;
+      const StoredLabel added{std::string(Trim(label)), change.first_frame, change.last_frame};
+      report.added += Add(added, take) ? 1 : 0;
     }
     if (take.labels != chosen->labels) changed.push_back(std::move(take));
   }
