@@ -35,10 +35,27 @@ LabelReport LabelByHand(const LibraryOptions& options) {
   return ChangeLabels(options.library, options.choice, change);
 }
 
+int WriteLabels(const LibraryOptions& options) {
+  const bool is_printed = IsStandardOutput(options.output);
+  if (options.common.json && is_printed) throw UsageError("--json needs -o FILE");
+  if (!is_printed) CheckWritable(options.output, options.common.overwrite());
+  const TakeLibrary library(options.library);
+  WriteTextOrPrint(options.output, FormatLabelTable(ChooseTakes(library, options.choice)),
+                   options.common);
+  if (is_printed) return kDone;
+  if (options.common.json) {
+    PrintJson({{"file", options.output.string()}});
+  } else {
+    PrintWritten(options.common, options.output);
+  }
+  return kDone;
+}
+
 int Label(const LibraryOptions& options) {
+  if (!options.output.empty()) return WriteLabels(options);
   const bool is_by_hand = !options.add.empty() || !options.remove.empty();
   if (is_by_hand != options.table.empty()) {
-    throw UsageError("library label needs --add or --remove, or a table with --from");
+    throw UsageError("library label needs --add or --remove, a table with --from, or -o for one");
   }
   const LabelReport report =
       is_by_hand ? LabelByHand(options)
@@ -113,6 +130,15 @@ void AddLabelActions(CLI::App& command, const std::shared_ptr<LibraryOptions>& o
       ->excludes(add)
       ->excludes(remove)
       ->excludes(frames);
+  label
+      ->add_option("-o,--output", options->output,
+                   "Write the labels as such a table (-: standard output)")
+      ->type_name("FILE")
+      ->excludes(add)
+      ->excludes(remove)
+      ->excludes(frames)
+      ->excludes("--from");
+  AddForceOption(*label, options->common);
   label->footer(
       "Examples:\n"
       "  kinebase library label motion.kinebase --classes squat1Reps --add gym,legs\n"

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "fmt/format.h"
+#include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "library/catalogue.h"
 #include "library/damage.h"
@@ -74,7 +75,7 @@ StoredLabel ToStored(const SegmentLabel& label, std::int64_t frames, const Place
   if (Trim(label.label).empty()) {
     throw Error(ErrorCode::kInvalidArgument, "the label is empty", place);
   }
-  return {label.label, label.first_frame, std::min(label.last_frame, frames)};
+  return {std::string(Trim(label.label)), label.first_frame, std::min(label.last_frame, frames)};
 }
 
 }  // namespace
@@ -93,7 +94,8 @@ LabelReport ChangeLabels(const fs::path& library, const TakeChoice& choice,
     StoredTake take = *chosen;
     report.removed += static_cast<std::int64_t>(Remove(change, take));
     for (const std::string& label : change.add) {
-      report.added += Add({label, change.first_frame, change.last_frame}, take) ? 1 : 0;
+      const StoredLabel added{std::string(Trim(label)), change.first_frame, change.last_frame};
+      report.added += Add(added, take) ? 1 : 0;
     }
     if (take.labels != chosen->labels) changed.push_back(std::move(take));
   }
@@ -133,6 +135,19 @@ LabelReport AddSegmentLabels(const fs::path& library, const TakeChoice& choice,
   Store(library, takes);
   report.takes = std::ssize(takes);
   return report;
+}
+
+std::string FormatLabelTable(std::span<const StoredTake* const> takes) {
+  std::string text = "file,class,first_frame,last_frame\n";
+  for (const StoredTake* take : takes) {
+    for (const StoredLabel& label : take->labels) {
+      const bool is_whole = label.first_frame == 0;
+      text += fmt::format("{},{},{},{}\n", CsvField(take->path.string()), CsvField(label.text),
+                          is_whole ? 1 : label.first_frame,
+                          is_whole ? take->frame_count : label.last_frame);
+    }
+  }
+  return text;
 }
 
 }  // namespace kinebase

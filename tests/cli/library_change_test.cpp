@@ -16,7 +16,6 @@ namespace kinebase::test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -81,6 +80,15 @@ TEST_F(ChangedLibrary, TakesLabelsOfTables) {
   EXPECT_EQ(report.Json()["passed_over"], 1);
   EXPECT_THAT(Run("label", {"--from", table}).err, HasSubstr("1 row of recordings"));
   EXPECT_THAT(Takes({"--labelled", "up"}), SizeIs(1));
+  // What is written is read again, also as truth.
+  EXPECT_EQ(Run("label", {"SYN_sa_squat1Reps_002_120.amc", "--add", "a, b"}).exit_code, 0);
+  const std::string out = recordings_.scratch() / "out.csv";
+  EXPECT_EQ(Run("label", {"-o", out}).exit_code, 0);
+  const std::string written = ReadText(out);
+  EXPECT_EQ(Run("label", {"-o", "-"}).out, written);
+  const std::string squat = Takes({"--labelled", "up"})[0]["file"];
+  EXPECT_THAT(written, HasSubstr(squat + ",down,1,100\n" + squat + ",up,101,200\n"));
+  EXPECT_EQ(Run("label", {"--from", out, "--json"}).Json()["takes"], 1);  // 002, of all its frames.
   WriteText(table, "file,class,first_frame,last_frame\nSYN_sa_squat1Reps_001_120,up,9000,9001\n");
   ExpectOneError(Run("label", {"--from", table}), 1, {"labels.csv:2", "9000"});
 }

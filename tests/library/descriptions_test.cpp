@@ -6,18 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "kinebase/core/mapped_file.h"
 #include "kinebase/library/take_library.h"
 #include "library/made_up_takes.h"
-#include "support/test_data.h"
 
 namespace kinebase {
 namespace {
 
-namespace fs = std::filesystem;
 using test::ErrorOf;
 using testing::HasSubstr;
-using testing::SizeIs;
 
 std::string DescriptionOf(const std::string& file, const std::string& table) {
   std::vector<ImportSource> sources = {{.file = file}};

@@ -51,7 +51,7 @@ TEST_F(LabelledLibrary, KeepsLabelsOfTakesAndStretches) {
   EXPECT_THAT(Labels(0), ElementsAre(StoredLabel{"arms"}, StoredLabel{"gym"}));
   EXPECT_THAT(Labels(1), ElementsAre(StoredLabel{"arms"}, StoredLabel{"gym"},
                                      StoredLabel{"gym", 5, 40}, StoredLabel{"jump", 5, 40}));
-  EXPECT_EQ(Change({.add = {"gym", "gym"}}).takes, 0);
+  EXPECT_EQ(Change({.add = {"gym", " gym "}}).takes, 0);
   EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, IsEmpty());
 }
 

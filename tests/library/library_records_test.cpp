@@ -28,7 +28,7 @@ MotionTemplate TemplateCalled(const std::string& name) {
   made.feature_set_hash = LoadFeatureSet("bonn").hash;
   made.matrix.rate_hz = 30;
   made.matrix.feature_count = 39;
-  made.matrix.values.assign(2 * 39, 0.25);
+  made.matrix.values.assign(std::size_t{2} * 39, 0.25);
   made.matrix.values[3] = 1.0 / 3;
   made.matrix.weights.assign(2, 1);
   return made;

@@ -49,4 +49,8 @@ LabelReport AddSegmentLabels(const std::filesystem::path& library, const TakeCho
                              std::span<const SegmentLabel> labels,
                              const std::filesystem::path& table);
 
+// The labels as such a table, files by their full paths, with the columns file, class, first_frame,
+// last_frame. A label of a take as a whole has all of its frames.
+[[nodiscard]] std::string FormatLabelTable(std::span<const StoredTake* const> takes);
+
 }  // namespace kinebase
