@@ -137,6 +137,7 @@ def straight_line(results, value):
 
 LINES = {
     "making, clock s": lambda each: each["made"]["clock"],
+    "making, processor s": lambda each: each["made"]["busy"],
     "one template, clock s": lambda each: each["one"]["clock"],
     "one template, processor s": lambda each: each["one"]["busy"],
     f"{TEMPLATES} templates, clock s": lambda each: each["many"]["clock"],

@@ -62,8 +62,15 @@ std::string_view ToString(EulerOrder order) { return kEulerNames[static_cast<std
 
 Eigen::Quaterniond EulerToQuaternion(const Eigen::Vector3d& angles_rad, EulerOrder order) {
   const auto& [first, second, third] = kEulerAxes[static_cast<std::size_t>(order)];
-  return AboutAxis(third, angles_rad[third]) * AboutAxis(second, angles_rad[second]) *
-         AboutAxis(first, angles_rad[first]);
+  const auto about = [&](int axis) { return AboutAxis(axis, angles_rad[axis]); };
+  // Many joints turn about one axis or two, and a product with no rotation changes no digit.
+  if (angles_rad[third] == 0) {
+    if (angles_rad[second] == 0) return about(first);
+    return angles_rad[first] == 0 ? about(second) : about(second) * about(first);
+  }
+  const Eigen::Quaterniond outer =
+      angles_rad[second] == 0 ? about(third) : about(third) * about(second);
+  return angles_rad[first] == 0 ? outer : outer * about(first);
 }
 
 // With the axes i, j, k of the order and R = R_k · R_j · R_i, the last row of R in that order is

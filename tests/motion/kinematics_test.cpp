@@ -7,8 +7,10 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "kinebase/core/error.h"
 #include "motion/figure.h"
@@ -184,6 +186,28 @@ RC_GTEST_PROP(EulerToQuaternion, IsTheProductOfThreeTurns, ()) {
   }
   const Matrix3d turned = EulerToQuaternion(angles, order).toRotationMatrix();
   RC_ASSERT((turned - expected).norm() < 1e-12);
+}
+
+// Turns by nothing are left out of the product, which they do not change.
+TEST(EulerToQuaternion, HasTheDigitsOfTheWholeProductWhereAnglesAreZero) {
+  const std::array<Vector3d, 3> axes = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  for (int zeros = 0; zeros < 8; ++zeros) {
+    Vector3d angles(0.3, -1.7, 2.9);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (((zeros >> axis) & 1) != 0) angles[axis] = 0;
+    }
+    for (int order = 0; order < 6; ++order) {
+      const std::string_view name = ToString(static_cast<EulerOrder>(order));
+      const auto turn = [&](std::size_t place) {
+        const auto axis = static_cast<std::size_t>(name[place] - 'X');
+        return Eigen::Quaterniond(
+            Eigen::AngleAxisd(angles[static_cast<Eigen::Index>(axis)], axes[axis]));
+      };
+      const Eigen::Quaterniond expected = turn(2) * turn(1) * turn(0);
+      EXPECT_EQ(EulerToQuaternion(angles, static_cast<EulerOrder>(order)).coeffs(),
+                expected.coeffs());
+    }
+  }
 }
 
 RC_GTEST_PROP(QuaternionToEuler, FindsAnglesOfTheSameRotation, ()) {
