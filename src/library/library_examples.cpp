@@ -16,7 +16,7 @@ using Chosen = std::vector<const StoredTake*>;
 
 // A word, and a pose with what is computed of it on the way.
 constexpr std::int64_t kBytesOfAColumn = 16;
-constexpr std::int64_t kBytesOfAPose = 2 * kPoseValues * std::int64_t{sizeof(float)};
+constexpr std::int64_t kBytesOfAPose = std::int64_t{2} * kPoseValues * sizeof(float);
 
 std::int64_t BytesOf(std::int64_t columns, bool with_poses) {
   return columns * (kBytesOfAColumn + (with_poses ? kBytesOfAPose : 0));

@@ -75,9 +75,8 @@ class UseOfALibrary : public ::testing::Test {
                            "--quiet"})
                   .exit_code,
               0);
-    Arguments templates;
-    for (const fs::path& file : FilesBelow(classes, ".json")) templates.push_back(file);
-    return templates;
+    const std::vector<fs::path> files = FilesBelow(classes, ".json");
+    return {files.begin(), files.end()};
   }
 
   SyntheticLibrary recordings_;

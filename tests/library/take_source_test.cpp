@@ -101,6 +101,7 @@ TEST_F(StoredTakes, ArePreselectedAsTheFilesAre) {
         .features = &features_, .keyframes = {{keyframes, 5}}, .only_preselected = true};
     std::vector<Stretch> of_files;
     std::vector<TakeStretch> stretches;
+    stretches.reserve(expected_.size());
     for (const TakeFeatures& take : expected_) stretches.push_back(take.stretch);
     (void)TakeSource(stretches, {}).Visit(request, [&](const TakesAtHand& at_hand) {
       of_files = at_hand.stretches.front();
