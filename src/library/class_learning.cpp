@@ -97,8 +97,7 @@ void GatherUnlabelled(std::span<const MotionTemplate> templates, std::span<const
   }
 }
 
-// What right hits usually cost, and what the best wrong one does; empty if one of them is not
-// known.
+// What right hits usually cost, and what the best wrong one does.
 struct CostRange {
   double right = 0;
   double wrong = 0;
@@ -124,7 +123,8 @@ std::optional<CostRange> UsualCosts(const ClassEvidence& evidence) {
   }
   if (std::isinf(range.wrong))
     range.wrong = internal::Median(evidence.unlabelled).value_or(range.wrong);
-  if (std::isinf(range.wrong)) return std::nullopt;
+  // A class that is usually mistaken, or one of which nothing is known.
+  if (!(range.wrong > range.right) || std::isinf(range.wrong)) return std::nullopt;
   return range;
 }
 
@@ -297,11 +297,8 @@ void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates) {
     if (of_class == evidence.end()) continue;
     const std::optional<CostRange> range = UsualCosts(of_class->second);
     if (!range) continue;
-    const bool is_mistaken = range->wrong < range->right;
-    if (range->wrong == range->right || (is_mistaken && !each.contrast)) continue;
     each.tau = internal::ThresholdBetween(range->right, range->wrong);
     each.tau_origin = "half way from right to wrong hits in the training clips";
-    if (is_mistaken) continue;
     each.calibration = HalfAt(*each.tau, internal::kSteepness / (range->wrong - range->right));
   }
 }

@@ -228,7 +228,7 @@ TEST_F(ContrastCommands, SayWhatIsMissing) {
            {{"evaluate", "--clips", list, "--thresholds", "background"}, 2, "--protocol annotate"},
            {{"evaluate", "--clips", list, "--thresholds", "training", "--preset", "table1"},
             2,
-            "--preset excludes --thresholds"},
+            "--thresholds excludes --preset"},
            {{"evaluate", "--clips", out}, 1, "x.json"},
            {{"evaluate", "--clips", list, "--methods", "best"}, 2, "mt+"},
            {{"evaluate", "--clips", list, "--possibly-relevant", list}, 2, "--labels"},

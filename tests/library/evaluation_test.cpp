@@ -94,13 +94,11 @@ TEST(Calibrate, PutsTheThresholdHalfWayToWrongHits) {
                                .seen = {{0.00, true}, {0.02, true}, {0.01, true}, {0.40, false}}}},
                              {"only right", {.seen = {{0.1, true}}}},
                              {"alone", {.seen = {{0.1, true}}, .unlabelled = {0.9, 0.4, 0.1}}},
-                             {"mistaken", {.seen = {{0.3, true}, {0.2, false}}}},
-                             {"contrast", {.seen = {{0.3, true}, {0.2, false}}}}};
+                             {"mistaken", {.seen = {{0.3, true}, {0.2, false}}}}};
   std::vector<MotionTemplate> templates;
   for (const char* name : {"a", "only right", "alone", "mistaken", "unknown"}) {
     templates.push_back({.name = name, .tau = 0.7});
   }
-  templates.push_back({.name = "contrast", .tau = 0.7, .contrast = Contrast{}});
   Calibrate(evidence, templates);
   // Right hits: half way between .12 and .01; the best wrong one costs .4.
   EXPECT_NEAR(*templates[0].tau, 0.065 + (0.4 - 0.065) / 2, 1e-12);
@@ -112,8 +110,6 @@ TEST(Calibrate, PutsTheThresholdHalfWayToWrongHits) {
     EXPECT_EQ(templates[i].tau, 0.7) << i;
     EXPECT_FALSE(templates[i].calibration) << i;
   }
-  EXPECT_DOUBLE_EQ(*templates[5].tau, 0.25);  // Its scale is its own: no other threshold fits it.
-  EXPECT_FALSE(templates[5].calibration);
 }
 
 // Found in quality.md of the method's description: figures of an independent implementation on the

@@ -139,10 +139,8 @@ using Evidence = std::map<std::string, ClassEvidence>;  // By class.
 // two medians. The threshold lies half way from there to the best wrong hit in any clip. At the
 // threshold the confidence is ½. Of a class that is learned alone, wrong is the median of the
 // recordings without labels. Where nothing unseen is known of a class, those that were learned from
-// decide alone, and the threshold is low. A class without right or wrong hits, or
-// whose hits cost the same, keeps what it has; so does a plain template whose wrong hits cost less
-// than its right ones, as thresholds of plain costs are known from elsewhere. One with a contrast
-// gets its threshold even then, but no confidence.
+// decide alone, and the threshold is low. A class without right or wrong hits, or whose wrong
+// hits cost no more than its right ones, keeps what it has.
 void Calibrate(const Evidence& evidence, std::span<MotionTemplate> templates);
 
 // What each method searches with: templates as LearnClasses, GatherEvidence and Calibrate make
