@@ -142,13 +142,7 @@ void CheckWhatIsImported() {
   }
 }
 
-}  // namespace
-}  // namespace kinebase
-
-int main(int argc, char** argv) {
-  using namespace kinebase;
-  benchmark::Initialize(&argc, argv);
-  CheckWhatIsImported();
+void RegisterAll() {
   const auto add = [](const char* name, auto run) {
     benchmark::RegisterBenchmark(name, run)->Unit(benchmark::kMillisecond)->UseRealTime();
   };
@@ -162,5 +156,14 @@ int main(int argc, char** argv) {
   add_step("features", [](const fs::path& file) {
     benchmark::DoNotOptimize(ExtractFeatures(JointsOf(file), Features()));
   });
+}
+
+}  // namespace
+}  // namespace kinebase
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  kinebase::CheckWhatIsImported();
+  kinebase::RegisterAll();
   benchmark::RunSpecifiedBenchmarks();
 }
