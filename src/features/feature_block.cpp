@@ -57,8 +57,8 @@ void FeatureBlock::MoveTo(int first) {
 }
 
 const double* FeatureBlock::Axis(int joint, int axis, int sample) const {
-  const auto row = static_cast<std::size_t>(joint * kAxes + axis);
-  return places_.data() + row * static_cast<std::size_t>(held_size_) + (sample - held_first_);
+  const int row = joint * kAxes + axis;
+  return places_.data() + static_cast<std::ptrdiff_t>(row) * held_size_ + (sample - held_first_);
 }
 
 FeatureBlock::Vectors FeatureBlock::Between(StandardJoint from, StandardJoint to) const {
