@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,11 @@ CLI::App* AddLibraryAction(CLI::App& command, const std::shared_ptr<LibraryOptio
 [[nodiscard]] std::string FormatSize(std::int64_t bytes);   // "1.50 MB".
 [[nodiscard]] std::string FormatDate(std::int64_t time_s);  // "2006-09-02T10:00:00Z"; "" for 0.
 [[nodiscard]] Json TextOrNull(const std::string& text);
+
+// What could not be used, beside what could: on standard error, and as "failed" of the output.
+void PrintFailures(std::span<const TakeFailure> failures);
+void AddFailures(std::span<const TakeFailure> failures, Json& json);
+[[nodiscard]] int ExitCodeOf(std::span<const TakeFailure> failures);
 
 void AddLabelActions(CLI::App& command, const std::shared_ptr<LibraryOptions>& options,
                      int& exit_code);  // label, compact

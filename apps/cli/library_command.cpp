@@ -47,11 +47,6 @@ Json LabelsAsJson(const StoredTake& take) {
   return labels;
 }
 
-std::string KeyText(const ContentKey& key) {
-  const bool is_known = key[0] != 0 || key[1] != 0;
-  return is_known ? fmt::format("{:016x}{:016x}", key[1], key[0]) : "";
-}
-
 Json ToJson(const StoredTake& take) {
   return {{"file", take.path.string()},
           {"format", take.format},
@@ -74,14 +69,15 @@ Json ToJson(const StoredTake& take) {
             {"options", take.origin.options}}}};
 }
 
-Json ListAsJson(const TakeLibrary& library, std::span<const StoredTake* const> takes) {
+Json ListAsJson(const TakeLibrary& library, const ChosenTakes& chosen) {
   Json json = {{"takes", Json::array()}, {"feature_sets", Json::array()}};
-  for (const StoredTake* take : takes) json["takes"].push_back(ToJson(*take));
+  for (const StoredTake* take : chosen.takes) json["takes"].push_back(ToJson(*take));
   for (const StoredFeatureSet& set : library.feature_sets()) {
     json["feature_sets"].push_back(
         {{"name", set.name}, {"rate_hz", set.rate_hz}, {"takes", set.takes}});
   }
   json["bytes"] = library.segment_bytes();
+  AddFailures(chosen.failures, json);
   return json;
 }
 
@@ -130,10 +126,12 @@ TextTable TakeTable(std::span<const StoredTake* const> takes,
 
 int List(const LibraryOptions& options) {
   const TakeLibrary library(options.library);
-  const std::vector<const StoredTake*> takes = ChooseTakes(library, options.choice);
+  const ChosenTakes chosen = ChooseIntactTakes(library, options.choice);
+  const std::vector<const StoredTake*>& takes = chosen.takes;
+  PrintFailures(chosen.failures);
   if (options.common.json) {
-    PrintJson(ListAsJson(library, takes));
-    return kDone;
+    PrintJson(ListAsJson(library, chosen));
+    return ExitCodeOf(chosen.failures);
   }
   double seconds = 0;
   for (const StoredTake* take : takes) seconds += SecondsOf(*take);
@@ -146,7 +144,7 @@ int List(const LibraryOptions& options) {
                         FormatCount(set.takes, "take", "takes"));
   }
   PrintNote(options.common, note);
-  return kDone;
+  return ExitCodeOf(chosen.failures);
 }
 
 // A line for what is wrong, with the take, or how many there are, that it costs.
@@ -163,9 +161,17 @@ void PrintDamage(const std::vector<TakeFailure>& damaged) {
 // What is wrong beside the takes, with what to do.
 std::vector<std::string> OtherDamage(const VerifyReport& report) {
   std::vector<std::string> lines;
-  lines.reserve(report.damaged_records.size() + 1);
+  lines.reserve(report.damaged_records.size() + 2);
   for (const std::string& record : report.damaged_records) {
-    lines.push_back("catalogue: " + record + " is damaged; remove it and add it again");
+    lines.push_back(
+        "catalogue: " + record +
+        " is damaged; run 'kinebase library remove LIBRARY --damaged' and add it again");
+  }
+  if (report.orphaned_rows > 0) {
+    lines.push_back(
+        fmt::format("catalogue: {} to no take; 'kinebase library remove LIBRARY --damaged' removes "
+                    "what is left of it",
+                    FormatCount(report.orphaned_rows, "row belongs", "rows belong")));
   }
   if (report.words_are_damaged) {
     lines.emplace_back(
@@ -222,12 +228,18 @@ int Remove(const LibraryOptions& options) {
   const auto removed =
       RemoveTakes(options.library,
                   {.names = choice.names, .filter = choice.filter, .damaged = options.damaged});
+  std::vector<std::string> records;
+  if (options.damaged && choice.names.empty() && choice.filter == TakeFilter()) {
+    records = RemoveDamagedRecords(options.library);
+  }
   if (options.common.json) {
     Json json = {{"removed", Json::array()}};
     for (const auto& path : removed) json["removed"].push_back(path.string());
+    if (!records.empty()) json["records"] = records;
     PrintJson(json);
   } else {
     for (const auto& path : removed) Print(OnOneLine(path.string()) + '\n');
+    for (const std::string& record : records) Print(OnOneLine(record) + '\n');
     PrintNote(options.common,
               fmt::format("{} removed; the recordings themselves stay where they are",
                           FormatCount(std::ssize(removed), "take", "takes")));
@@ -240,18 +252,21 @@ int Export(const LibraryOptions& options) {
   if (options.common.json && is_printed) throw UsageError("--json needs -o FILE");
   if (!is_printed) CheckWritable(options.output, options.common.overwrite());
   const TakeLibrary library(options.library);
-  const std::vector<const StoredTake*> chosen = ChooseTakes(library, options.choice);
+  const auto [chosen, failures] = ChooseIntactTakes(library, options.choice);
   std::vector<StoredTake> takes;
   takes.reserve(chosen.size());
   for (const StoredTake* take : chosen) takes.push_back(*take);
+  PrintFailures(failures);
   WriteTextOrPrint(options.output, FormatTakeList(takes), options.common);
-  if (is_printed) return kDone;
+  if (is_printed) return ExitCodeOf(failures);
   if (options.common.json) {
-    PrintJson({{"file", options.output.string()}, {"takes", takes.size()}});
+    Json json = {{"file", options.output.string()}, {"takes", takes.size()}};
+    AddFailures(failures, json);
+    PrintJson(json);
   } else {
     PrintWritten(options.common, options.output);
   }
-  return kDone;
+  return ExitCodeOf(failures);
 }
 
 void AddReadingActions(CLI::App& command, const std::shared_ptr<LibraryOptions>& options,
@@ -301,6 +316,21 @@ std::string FormatDate(std::int64_t time_s) {
                      clock.hours().count(), clock.minutes().count(), clock.seconds().count());
 }
 
+void PrintFailures(std::span<const TakeFailure> failures) {
+  for (const TakeFailure& failure : failures) PrintError(failure.error.what());
+}
+
+void AddFailures(std::span<const TakeFailure> failures, Json& json) {
+  for (const TakeFailure& failure : failures) {
+    json["failed"].push_back(
+        {{"file", TextOrNull(failure.path.string())}, {"message", failure.error.what()}});
+  }
+}
+
+int ExitCodeOf(std::span<const TakeFailure> failures) {
+  return failures.empty() ? kDone : kPartFailed;
+}
+
 Json TextOrNull(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 CLI::App* AddLibraryAction(CLI::App& command, const std::shared_ptr<LibraryOptions>& options,
@@ -323,7 +353,10 @@ void AddLibraryCommand(CLI::App& program, int& exit_code) {
   CLI::App* remove = AddLibraryAction(*command, options, exit_code, "remove", &Remove);
   remove->description("Take takes out; their recordings stay where they are");
   AddTakeChoiceOptions(*remove, options->choice);
-  remove->add_flag("--damaged", options->damaged, "Only takes that cannot be read any more");
+  remove->add_flag(
+      "--damaged", options->damaged,
+      "Only takes that cannot be read any more; also what else the catalogue has that is "
+      "damaged");
   remove->footer(
       "Examples:\n"
       "  kinebase library remove motion.kinebase take.amc\n"

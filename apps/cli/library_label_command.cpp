@@ -40,15 +40,18 @@ int WriteLabels(const LibraryOptions& options) {
   if (options.common.json && is_printed) throw UsageError("--json needs -o FILE");
   if (!is_printed) CheckWritable(options.output, options.common.overwrite());
   const TakeLibrary library(options.library);
-  WriteTextOrPrint(options.output, FormatLabelTable(ChooseTakes(library, options.choice)),
-                   options.common);
-  if (is_printed) return kDone;
+  const auto [takes, failures] = ChooseIntactTakes(library, options.choice);
+  PrintFailures(failures);
+  WriteTextOrPrint(options.output, FormatLabelTable(takes), options.common);
+  if (is_printed) return ExitCodeOf(failures);
   if (options.common.json) {
-    PrintJson({{"file", options.output.string()}});
+    Json json = {{"file", options.output.string()}};
+    AddFailures(failures, json);
+    PrintJson(json);
   } else {
     PrintWritten(options.common, options.output);
   }
-  return kDone;
+  return ExitCodeOf(failures);
 }
 
 int Label(const LibraryOptions& options) {
@@ -77,25 +80,18 @@ int Label(const LibraryOptions& options) {
   return kDone;
 }
 
-Json FailuresAsJson(const std::vector<TakeFailure>& failures) {
-  Json json = Json::array();
-  for (const TakeFailure& failure : failures) {
-    json.push_back({{"file", failure.path.string()}, {"message", failure.error.what()}});
-  }
-  return json;
-}
-
 int Compact(const LibraryOptions& options) {
   const CompactReport report =
-      CompactLibrary(options.library, {.progress = MakeProgress(options.common)});
-  for (const TakeFailure& failure : report.failures) PrintError(failure.error.what());
+      CompactLibrary(options.library,
+                     {.threads = options.common.threads, .progress = MakeProgress(options.common)});
+  PrintFailures(report.failures);
   if (options.common.json) {
     Json json = {{"segments_before", report.segments_before},
                  {"segments_after", report.segments_after},
                  {"bytes_before", report.bytes_before},
                  {"bytes_after", report.bytes_after},
                  {"bytes_freed", report.bytes_before - report.bytes_after}};
-    if (!report.failures.empty()) json["failed"] = FailuresAsJson(report.failures);
+    AddFailures(report.failures, json);
     PrintJson(json);
   } else {
     Print(fmt::format("{} freed; {} in {}, before {} in {}\n",
@@ -104,7 +100,7 @@ int Compact(const LibraryOptions& options) {
                       FormatCount(report.segments_after, "segment", "segments"),
                       FormatSize(report.bytes_before), report.segments_before));
   }
-  return report.failures.empty() ? kDone : kPartFailed;
+  return ExitCodeOf(report.failures);
 }
 
 }  // namespace
@@ -147,6 +143,7 @@ void AddLabelActions(CLI::App& command, const std::shared_ptr<LibraryOptions>& o
 
   CLI::App* compact = AddLibraryAction(command, options, exit_code, "compact", &Compact);
   compact->description("Give back the room of removed takes, and join small segment files");
+  AddThreadsOption(*compact, options->common);
   compact->footer("Example:\n  kinebase library compact motion.kinebase");
 }
 

@@ -53,22 +53,29 @@ int ShowTemplates(const LibraryOptions& options) {
   const std::vector<StoredTemplate> templates = ListTemplates(options.library);
   Json json = {{"templates", Json::array()}};
   TextTable table({"template", "feature set", ">columns", "stored"});
+  std::vector<TakeFailure> failures;
   for (const StoredTemplate& stored : templates) {
-    const MotionTemplate read = LoadTemplate(options.library, stored.name);
-    json["templates"].push_back({{"name", stored.name},
-                                 {"feature_set", read.feature_set},
-                                 {"columns", read.matrix.column_count()},
-                                 {"stored", TextOrNull(FormatDate(stored.stored_s))}});
-    table.Add({stored.name, read.feature_set, std::to_string(read.matrix.column_count()),
-               FormatDate(stored.stored_s)});
+    try {
+      const MotionTemplate read = ParseStoredTemplate(stored, options.library);
+      json["templates"].push_back({{"name", stored.name},
+                                   {"feature_set", read.feature_set},
+                                   {"columns", read.matrix.column_count()},
+                                   {"stored", TextOrNull(FormatDate(stored.stored_s))}});
+      table.Add({stored.name, read.feature_set, std::to_string(read.matrix.column_count()),
+                 FormatDate(stored.stored_s)});
+    } catch (const Error& error) {
+      failures.push_back({"", error});
+    }
   }
+  PrintFailures(failures);
   if (options.common.json) {
+    AddFailures(failures, json);
     PrintJson(json);
-  } else if (!templates.empty()) {
+  } else if (failures.size() < templates.size()) {
     Print(table.ToString());
   }
   PrintNote(options.common, FormatCount(std::ssize(templates), "template", "templates"));
-  return kDone;
+  return ExitCodeOf(failures);
 }
 
 int Templates(const LibraryOptions& options) {
@@ -136,8 +143,8 @@ std::string AnnotationTable(std::span<const StoredAnnotation> annotations) {
 int ShowAnnotations(const LibraryOptions& options) {
   const bool is_printed = IsStandardOutput(options.output);
   if (!is_printed) CheckWritable(options.output, options.common.overwrite());
-  const std::vector<StoredAnnotation> annotations =
-      ListAnnotations(options.library, options.choice);
+  const auto [annotations, failures] = ListAnnotations(options.library, options.choice);
+  PrintFailures(failures);
   if (!options.output.empty()) {
     WriteTextOrPrint(options.output,
                      FormatAnnotationTable(annotations, TakeLibrary(options.library).takes()),
@@ -147,12 +154,13 @@ int ShowAnnotations(const LibraryOptions& options) {
   if (options.common.json) {
     Json json = {{"annotations", Json::array()}};
     for (const StoredAnnotation& each : annotations) json["annotations"].push_back(ToJson(each));
+    AddFailures(failures, json);
     PrintJson(json);
   } else if (options.output.empty()) {
     if (!annotations.empty()) Print(AnnotationTable(annotations));
     PrintNote(options.common, FormatCount(std::ssize(annotations), "annotation", "annotations"));
   }
-  return kDone;
+  return ExitCodeOf(failures);
 }
 
 int Annotations(const LibraryOptions& options) {

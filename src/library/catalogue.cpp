@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string KeyText(const ContentKey& key) { return fmt::format("{:016x}{:016x}", key[1], key[0]); }
-
 ContentKey ParseKey(std::string_view text) {
   constexpr std::size_t kDigits = 16;
   ContentKey key = {};
@@ -34,11 +32,15 @@ ContentKey ParseKey(std::string_view text) {
 }
 
 // Searching counts with both: places in a take are computed from them.
-void CheckTake(const StoredTake& take, const fs::path& catalogue) {
+bool IsPossible(const StoredTake& take) {
   const bool has_rate = std::isfinite(take.rate_hz) && take.rate_hz > 0;
-  const bool has_frames =
-      take.frame_count >= 1 && take.frame_count <= std::numeric_limits<std::int32_t>::max();
-  if (has_rate && has_frames) return;
+  return has_rate && take.frame_count >= 1 &&
+         take.frame_count <= std::numeric_limits<std::int32_t>::max();
+}
+
+// For version 1, which has no checksum that says whether a take is meant to be so.
+void CheckIsPossible(const StoredTake& take, const fs::path& catalogue) {
+  if (IsPossible(take)) return;
   throw Error(
       ErrorCode::kMalformedFile,
       fmt::format("says that {} has {} frames at {:g} Hz; restore it from a copy, or import "
@@ -85,7 +87,10 @@ void CompareChecksums(const SqliteDatabase& database, const Places& places,
     const auto place = places.find(rows.Integer(0));
     if (place == places.end()) continue;
     StoredTake& take = takes[place->second];
-    take.is_intact = ChecksumOf(take) == rows.Integer(1);
+    take.is_intact = ChecksumOf(take) == rows.Integer(1) && IsPossible(take);
+    if (take.is_intact) continue;
+    take.frame_count = 0;  // Nobody is to count with what they may have become.
+    take.rate_hz = 1;
   }
 }
 
@@ -112,6 +117,16 @@ void PutLabels(const SqliteDatabase& database, StoredTake& take) {
   for (const StoredLabel& label : take.labels) {
     insert.Bind(take.id).Bind(label.text).Bind(label.first_frame).Bind(label.last_frame).Run();
   }
+}
+
+// The tables whose rows belong to takes.
+std::span<const char* const> TablesOfTakes(std::int64_t version) {
+  static constexpr const char* kTables[] = {"features", "labels", "annotations"};
+  return std::span(kTables).first(version == 0 ? 0 : version == 1 ? 1 : 3);
+}
+
+std::string Orphans(const char* table) {
+  return fmt::format("FROM {} WHERE take NOT IN (SELECT id FROM takes)", table);
 }
 
 void PutChecksum(const SqliteDatabase& database, const StoredTake& take) {
@@ -173,7 +188,9 @@ Catalogue::Catalogue(const fs::path& library, SqliteDatabase::Access access)
   }
   CheckSchema(database_);
   if (is_empty) CheckHasNoLostSegments(library);
-  if (access == SqliteDatabase::Access::kCreate && version_ < kCatalogueVersion) Upgrade();
+  if (access != SqliteDatabase::Access::kCreate) return;
+  if (version_ < kCatalogueVersion) Upgrade();
+  MakeMissingText();
 }
 
 void Catalogue::Upgrade() {
@@ -183,6 +200,14 @@ void Catalogue::Upgrade() {
   if (before == 1) {
     for (const StoredTake& take : Takes()) PutTake(take);
   }
+  transaction.Commit();
+}
+
+void Catalogue::MakeMissingText() {
+  if (HasTextTable(database_)) return;
+  SqliteTransaction transaction(database_, SqliteTransaction::Kind::kWrite);
+  MakeTextTable(database_, "main");
+  FillText(database_, Takes());
   transaction.Commit();
 }
 
@@ -205,8 +230,10 @@ std::vector<StoredTake> Catalogue::TakeRows() const {
                      .rate_hz = rows.Real(7),
                      .frame_count = rows.Integer(8)});
     StoredTake& take = takes.back();
-    CheckTake(take, database_.file());
-    if (version_ == 1) continue;
+    if (version_ == 1) {
+      CheckIsPossible(take, database_.file());
+      continue;
+    }
     take.description = rows.Text(9);
     take.skeleton = {rows.Text(10), ParseKey(rows.Text(11))};
     take.origin = {.imported_s = rows.Integer(12),
@@ -257,13 +284,24 @@ std::vector<std::int64_t> Catalogue::Segments() const {
   return segments;
 }
 
+std::vector<std::int64_t> Catalogue::NamedSegments() const {
+  if (version_ == 0) return {};
+  SqliteStatement rows(database_,
+                       "SELECT id FROM segments UNION SELECT segment FROM features ORDER BY 1");
+  std::vector<std::int64_t> segments;
+  while (rows.Step()) segments.push_back(rows.Integer(0));
+  return segments;
+}
+
 std::int64_t Catalogue::SegmentBytes() const {
   return version_ == 0 ? 0 : database_.Number("SELECT coalesce(sum(bytes), 0) FROM segments");
 }
 
 std::vector<std::int64_t> Catalogue::FindText(std::string_view query) const {
   if (version_ == 0) return {};
-  if (version_ == 1 && database_.Number("SELECT count(*) FROM temp.sqlite_master") == 0) {
+  const bool has_words = database_.Number("SELECT count(*) FROM temp.sqlite_master") > 0 ||
+                         (version_ > 1 && HasTextOfAll(database_));
+  if (!has_words) {
     MakeTextTable(database_, "temp");
     FillText(database_, Takes());
   }
@@ -334,20 +372,51 @@ void Catalogue::RemoveTake(std::int64_t id) {
 }
 
 std::vector<std::int64_t> Catalogue::DropUnusedSegments() {
+  std::vector<std::int64_t> dropped;
+  const bool has_unused = database_.Number(
+                              "SELECT EXISTS(SELECT 1 FROM segments WHERE id NOT IN "
+                              "(SELECT segment FROM features))") != 0;
+  if (!has_unused || HasDamagedRows()) return dropped;
   SqliteStatement rows(database_,
                        "DELETE FROM segments WHERE id NOT IN (SELECT segment FROM features) "
                        "RETURNING id");
-  std::vector<std::int64_t> dropped;
   while (rows.Step()) dropped.push_back(rows.Integer(0));
   return dropped;
+}
+
+std::int64_t Catalogue::CountOrphans() const {
+  std::int64_t orphans = 0;
+  for (const char* table : TablesOfTakes(version_)) {
+    orphans += database_.Number(fmt::format("SELECT count(*) {}", Orphans(table)).c_str());
+  }
+  return orphans;
+}
+
+void Catalogue::RemoveOrphans() {
+  for (const char* table : TablesOfTakes(version_)) {
+    database_.Execute(fmt::format("DELETE {}", Orphans(table)).c_str());
+  }
+}
+
+bool Catalogue::HasDamagedRows() const {
+  return CountOrphans() > 0 ||
+         std::ranges::any_of(Takes(), [](const StoredTake& take) { return !take.is_intact; });
 }
 
 std::string Catalogue::Check() const {
   SqliteStatement check(database_, "PRAGMA integrity_check(1)");
   std::string found = check.Step() ? check.Text(0) : "nothing can be read";
   if (found != "ok") return found;
-  SqliteStatement references(database_, "PRAGMA foreign_key_check");
-  return references.Step() ? "a row of " + references.Text(0) + " refers to nothing" : "";
+  std::set<std::uint64_t> sets;
+  SqliteStatement rows(database_, "SELECT hash FROM feature_sets");
+  while (rows.Step()) sets.insert(static_cast<std::uint64_t>(rows.Integer(0)));
+  for (const StoredTake& take : Takes()) {
+    const bool is_known = std::ranges::all_of(take.features, [&](const StoredFeatures& features) {
+      return sets.contains(features.feature_set_hash);
+    });
+    if (take.is_intact && !is_known) return "it lacks a feature set of " + take.path.string();
+  }
+  return {};
 }
 
 bool Catalogue::HasText() const { return version_ < 2 || HasTextOf(database_, Takes()); }
@@ -363,10 +432,10 @@ void RemoveSegments(const fs::path& library, std::span<const std::int64_t> segme
   }
 }
 
-std::vector<fs::path> FindLeftovers(const fs::path& library,
-                                    std::span<const std::int64_t> segments) {
+std::vector<fs::path> FindLeftovers(const fs::path& library, const Catalogue& catalogue) {
   std::set<fs::path> known;
-  for (const std::int64_t segment : segments) known.insert(SegmentPath(library, segment));
+  for (const std::int64_t each : catalogue.NamedSegments())
+    known.insert(SegmentPath(library, each));
   std::vector<fs::path> leftovers;
   std::error_code unreachable;
   for (const auto& entry : fs::directory_iterator(SegmentFolder(library), unreachable)) {
@@ -376,6 +445,13 @@ std::vector<fs::path> FindLeftovers(const fs::path& library,
   }
   std::ranges::sort(leftovers);
   return leftovers;
+}
+
+void RemoveLeftovers(const fs::path& library, const Catalogue& catalogue) {
+  for (const fs::path& leftover : FindLeftovers(library, catalogue)) {
+    std::error_code ignored;  // Another attempt will be made.
+    fs::remove(leftover, ignored);
+  }
 }
 
 }  // namespace kinebase::internal

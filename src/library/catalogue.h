@@ -46,14 +46,16 @@ class Catalogue {
   [[nodiscard]] std::int64_t version() const { return version_; }  // 0: no tables yet.
 
   // Inside of one transaction, where several answers are to fit together.
-  // Errors  Also MalformedFile for a take without frames or a rate, and where numbers run out.
+  // Errors  Also MalformedFile where numbers run out, and in version 1, which has no checksums,
+  //         for a take without frames or a rate.
   [[nodiscard]] std::vector<StoredTake> Takes() const;  // By path.
   [[nodiscard]] std::vector<StoredFeatureSet> FeatureSets() const;
   [[nodiscard]] std::vector<std::int64_t> Segments() const;
+  [[nodiscard]] std::vector<std::int64_t> NamedSegments() const;  // Also those of features alone.
   [[nodiscard]] std::int64_t SegmentBytes() const;
   [[nodiscard]] std::int64_t NextSegment() const;
-  // Ids of takes, ascending, as internal::FindText. Where there is no table of words yet, one is
-  // made for this connection.
+  // Ids of takes, ascending, as internal::FindText. Where words are missing, as all are in version
+  // 1, they are made for this connection.
   [[nodiscard]] std::vector<std::int64_t> FindText(std::string_view query) const;
 
   // Inside of a transaction that writes.
@@ -64,7 +66,13 @@ class Catalogue {
   void PutTake(const StoredTake& take);
   void MoveFeatures(const StoredTake& take);  // Only where the features of one that is there are.
   void RemoveTake(std::int64_t id);
-  [[nodiscard]] std::vector<std::int64_t> DropUnusedSegments();  // Their numbers.
+  // Their numbers. None while there are damaged rows: what they say of segments is not known.
+  [[nodiscard]] std::vector<std::int64_t> DropUnusedSegments();
+
+  // Rows of features, labels and annotations whose take is not there.
+  [[nodiscard]] std::int64_t CountOrphans() const;
+  void RemoveOrphans();
+  [[nodiscard]] bool HasDamagedRows() const;  // Orphans, or takes that are not intact.
 
   // What is wrong with the file as a whole; empty: nothing. Cost  O(bytes of the file).
   [[nodiscard]] std::string Check() const;
@@ -74,6 +82,7 @@ class Catalogue {
 
  private:
   void Upgrade();
+  void MakeMissingText();
   [[nodiscard]] std::vector<StoredTake> TakeRows() const;  // Without labels and features.
 
   SqliteDatabase database_;
@@ -83,8 +92,10 @@ class Catalogue {
 // Files of segments that a transaction dropped; what cannot be removed is a leftover.
 void RemoveSegments(const std::filesystem::path& library, std::span<const std::int64_t> segments);
 
-// Segment files that the catalogue does not know, and unfinished ones.
-[[nodiscard]] std::vector<std::filesystem::path> FindLeftovers(
-    const std::filesystem::path& library, std::span<const std::int64_t> segments);
+// Segment files that the catalogue does not name, and unfinished ones.
+[[nodiscard]] std::vector<std::filesystem::path> FindLeftovers(const std::filesystem::path& library,
+                                                               const Catalogue& catalogue);
+// Those that can be removed. Under the lock.
+void RemoveLeftovers(const std::filesystem::path& library, const Catalogue& catalogue);
 
 }  // namespace kinebase::internal

@@ -77,6 +77,15 @@ std::vector<AnnotationOfTake> AnnotationRows(const Catalogue& catalogue) {
   return annotations;
 }
 
+std::string NameOf(const AnnotationOfTake& row) {
+  return fmt::format("annotation {}, frames {}-{} of take {}", Quoted(row.annotation.class_name),
+                     row.annotation.first_frame, row.annotation.last_frame, row.take);
+}
+
+void RemoveTemplate(const Catalogue& catalogue, const std::string& name) {
+  SqliteStatement(catalogue.database(), "DELETE FROM templates WHERE name = ?1").Bind(name).Run();
+}
+
 void PutTemplate(const Catalogue& catalogue, const StoredTemplate& stored) {
   SqliteStatement(catalogue.database(),
                   "INSERT OR REPLACE INTO templates VALUES(?1, ?2, ?3, ?4, ?5)")
@@ -119,11 +128,20 @@ std::vector<std::string> DamagedRecords(const Catalogue& catalogue) {
   }
   for (const AnnotationOfTake& row : AnnotationRows(catalogue)) {
     if (row.annotation.is_intact) continue;
-    damaged.push_back(fmt::format("annotation {}, frames {}-{} of take {}",
-                                  Quoted(row.annotation.class_name), row.annotation.first_frame,
-                                  row.annotation.last_frame, row.take));
+    damaged.push_back(NameOf(row));
   }
   return damaged;
+}
+
+std::vector<std::string> RemoveDamagedRecords(const Catalogue& catalogue) {
+  std::vector<std::string> removed = DamagedRecords(catalogue);
+  for (const StoredTemplate& stored : TemplateRows(catalogue)) {
+    if (!stored.is_intact) RemoveTemplate(catalogue, stored.name);
+  }
+  for (const AnnotationOfTake& row : AnnotationRows(catalogue)) {
+    if (!row.annotation.is_intact) RemoveAnnotation(catalogue, row);
+  }
+  return removed;
 }
 
 }  // namespace kinebase::internal

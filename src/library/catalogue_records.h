@@ -21,13 +21,17 @@ struct AnnotationOfTake {
   StoredAnnotation annotation;  // Without its path.
 };
 [[nodiscard]] std::vector<AnnotationOfTake> AnnotationRows(const Catalogue& catalogue);
+[[nodiscard]] std::string NameOf(const AnnotationOfTake& row);  // As messages have it.
 
 // Inside of a transaction that writes: adds a row, or replaces that of the same key.
+void RemoveTemplate(const Catalogue& catalogue, const std::string& name);
 void PutTemplate(const Catalogue& catalogue, const StoredTemplate& stored);
 void PutAnnotation(const Catalogue& catalogue, const AnnotationOfTake& row);
 void RemoveAnnotation(const Catalogue& catalogue, const AnnotationOfTake& row);
 
 // Those whose rows are not what was written, as messages name them.
 [[nodiscard]] std::vector<std::string> DamagedRecords(const Catalogue& catalogue);
+// Inside of a transaction that writes. Gives what was removed.
+std::vector<std::string> RemoveDamagedRecords(const Catalogue& catalogue);
 
 }  // namespace kinebase::internal

@@ -47,11 +47,12 @@ bool HasRowsOf(const SqliteDatabase& database, const std::vector<StoredTake>& ta
   std::unordered_map<std::int64_t, const StoredTake*> by_id;
   by_id.reserve(takes.size());
   for (const StoredTake& take : takes) by_id.emplace(take.id, &take);
-  SqliteStatement rows(database, "SELECT rowid, * FROM take_text");
+  SqliteStatement rows(database, "SELECT rowid, * FROM main.take_text");
   std::size_t count = 0;
   for (; rows.Step(); ++count) {
     const auto take = by_id.find(rows.Integer(0));
     if (take == by_id.end()) return false;
+    if (!take->second->is_intact) continue;  // Its words may be those that it had.
     const Texts expected = TextsOf(*take->second);
     for (std::size_t i = 0; i < kColumns; ++i) {
       if (rows.Text(static_cast<int>(i) + 1) != expected[i]) return false;
@@ -78,15 +79,10 @@ void RemoveText(const SqliteDatabase& database, std::int64_t take) {
 
 void PutText(const SqliteDatabase& database, const StoredTake& take) {
   RemoveText(database, take.id);
-  SqliteStatement row(database,
-                      "INSERT INTO take_text(rowid, name, class, actor, skeleton, labels, "
-                      "description) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)");
-  row.Bind(take.id);
-  for (const std::string& text : TextsOf(take)) row.Bind(text);
-  row.Run();
+  FillText(database, std::span(&take, 1));
 }
 
-void FillText(const SqliteDatabase& database, const std::vector<StoredTake>& takes) {
+void FillText(const SqliteDatabase& database, std::span<const StoredTake> takes) {
   SqliteStatement row(database,
                       "INSERT INTO take_text(rowid, name, class, actor, skeleton, labels, "
                       "description) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)");
@@ -105,6 +101,18 @@ std::vector<std::int64_t> FindText(const SqliteDatabase& database, std::string_v
   rows.Bind(match);
   while (rows.Step()) ids.push_back(rows.Integer(0));
   return ids;
+}
+
+bool HasTextTable(const SqliteDatabase& database) {
+  return database.Number("SELECT count(*) FROM main.sqlite_master WHERE name = 'take_text'") > 0;
+}
+
+bool HasTextOfAll(const SqliteDatabase& database) {
+  return IsSound([&] {
+    return database.Number(
+               "SELECT EXISTS(SELECT 1 FROM takes WHERE id NOT IN "
+               "(SELECT rowid FROM main.take_text))") == 0;
+  });
 }
 
 bool HasTextOf(const SqliteDatabase& database, const std::vector<StoredTake>& takes) {

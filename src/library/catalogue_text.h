@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,16 +19,21 @@ namespace kinebase::internal {
 void PutText(const SqliteDatabase& database, const StoredTake& take);
 void RemoveText(const SqliteDatabase& database, std::int64_t take);
 
-// All rows of a table that is empty. Inside of a transaction that writes, where it is not the
-// temporary table.
-void FillText(const SqliteDatabase& database, const std::vector<StoredTake>& takes);
+// Rows that are not there yet. Inside of a transaction that writes, where it is not the temporary
+// table.
+void FillText(const SqliteDatabase& database, std::span<const StoredTake> takes);
+
+[[nodiscard]] bool HasTextTable(const SqliteDatabase& database);
+// Whether there is a row for each take, whatever it says. Cost  O(takes).
+[[nodiscard]] bool HasTextOfAll(const SqliteDatabase& database);
 
 // The takes that have all words of the query or words that begin so, ascending. Marks in the query
 // only part words.
 [[nodiscard]] std::vector<std::int64_t> FindText(const SqliteDatabase& database,
                                                  std::string_view query);
 
-// Whether the rows are those of the takes. Inside of one transaction with the takes.
+// Whether the rows are those of the takes, as far as these are intact. Inside of one transaction
+// with the takes.
 [[nodiscard]] bool HasTextOf(const SqliteDatabase& database, const std::vector<StoredTake>& takes);
 
 // Whether the index over the rows is that of the rows. Outside of transactions that read: it takes

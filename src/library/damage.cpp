@@ -13,4 +13,12 @@ void CheckTakeRow(const StoredTake& take, const std::filesystem::path& library) 
       {.file = CatalogueFile(library)});
 }
 
+bool HoldsFeatures(const SegmentReader& segment, const StoredFeatures& features,
+                   const ContentKey& content) {
+  return features.slot >= 0 && features.slot < segment.take_count() &&
+         segment.Content(features.slot) == content &&
+         segment.feature_set_hash() == features.feature_set_hash &&
+         segment.rate_hz() == features.rate_hz;
+}
+
 }  // namespace kinebase::internal

@@ -22,4 +22,8 @@ inline bool IsDamage(const Error& error) {
 // Errors  MalformedFile if it is damaged, with the remedy.
 void CheckTakeRow(const StoredTake& take, const std::filesystem::path& library);
 
+// Whether a segment has the take's features where the catalogue says.
+[[nodiscard]] bool HoldsFeatures(const SegmentReader& segment, const StoredFeatures& features,
+                                 const ContentKey& content);
+
 }  // namespace kinebase::internal

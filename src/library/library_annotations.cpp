@@ -9,7 +9,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/library/annotation_file.h"
 #include "library/catalogue_records.h"
-#include "library/damage.h"
+#include "library/library_layout.h"
 #include "library/library_lock.h"
 #include "library/named_recordings.h"
 
@@ -78,15 +78,28 @@ void CheckWithin(const StoredAnnotation& annotation, const StoredTake& take, con
       place);
 }
 
-// Those of the chosen takes, with their paths.
-std::vector<AnnotationOfTake> ChosenRows(const Catalogue& catalogue, const TakeLibrary& opened,
-                                         const TakeChoice& choice) {
+// Those of the takes, with their paths, and all damaged ones, which may be of any.
+std::vector<AnnotationOfTake> RowsOf(std::span<const StoredTake* const> chosen,
+                                     const Catalogue& catalogue) {
   std::map<std::int64_t, const StoredTake*> takes;
-  for (const StoredTake* take : ChooseTakes(opened, choice)) takes.emplace(take->id, take);
+  for (const StoredTake* take : chosen) takes.emplace(take->id, take);
   std::vector<AnnotationOfTake> rows = internal::AnnotationRows(catalogue);
-  std::erase_if(rows, [&](const AnnotationOfTake& row) { return !takes.contains(row.take); });
-  for (AnnotationOfTake& row : rows) row.annotation.path = takes.at(row.take)->path;
+  std::erase_if(rows, [&](const AnnotationOfTake& row) {
+    return row.annotation.is_intact && !takes.contains(row.take);
+  });
+  for (AnnotationOfTake& row : rows) {
+    const auto take = takes.find(row.take);
+    if (take != takes.end()) row.annotation.path = take->second->path;
+  }
   return rows;
+}
+
+Error DamageOf(const AnnotationOfTake& row, const fs::path& library) {
+  return {ErrorCode::kMalformedFile,
+          fmt::format("the {} is damaged; run 'kinebase library remove LIBRARY --damaged' and add "
+                      "it again",
+                      internal::NameOf(row)),
+          {.file = internal::CatalogueFile(library)}};
 }
 
 std::string NumberText(const std::optional<double>& number) {
@@ -140,19 +153,24 @@ std::string FormatAnnotationTable(std::span<const StoredAnnotation> annotations,
   return text;
 }
 
-std::vector<StoredAnnotation> ListAnnotations(const fs::path& library, const TakeChoice& choice) {
+AnnotationList ListAnnotations(const fs::path& library, const TakeChoice& choice) {
   const TakeLibrary opened(library);
   const Catalogue catalogue(library, SqliteDatabase::Access::kRead);
-  std::vector<AnnotationOfTake> rows = ChosenRows(catalogue, opened, choice);
-  std::vector<StoredAnnotation> annotations;
-  annotations.reserve(rows.size());
+  ChosenTakes chosen = ChooseIntactTakes(opened, choice);
+  std::vector<AnnotationOfTake> rows = RowsOf(chosen.takes, catalogue);
+  AnnotationList list{.annotations = {}, .failures = std::move(chosen.failures)};
+  list.annotations.reserve(rows.size());
   for (AnnotationOfTake& row : rows) {
-    annotations.push_back(std::move(row.annotation));
+    if (row.annotation.is_intact) {
+      list.annotations.push_back(std::move(row.annotation));
+    } else {
+      list.failures.push_back({row.annotation.path, DamageOf(row, library)});
+    }
   }
-  std::ranges::stable_sort(annotations, {}, [](const StoredAnnotation& each) {
+  std::ranges::stable_sort(list.annotations, {}, [](const StoredAnnotation& each) {
     return std::tie(each.path, each.first_frame, each.last_frame, each.class_name);
   });
-  return annotations;
+  return list;
 }
 
 AnnotationReport StoreAnnotations(const fs::path& library, const TakeChoice& choice,
@@ -160,7 +178,7 @@ AnnotationReport StoreAnnotations(const fs::path& library, const TakeChoice& cho
   internal::CheckIsLibrary(library);
   const internal::LibraryLock lock(library);
   const TakeLibrary opened(library);
-  const internal::NamedRecordings recordings(ChooseTakes(opened, choice));
+  const internal::NamedRecordings recordings(ChooseTakesToChange(opened, choice));
   const Catalogue catalogue(library, SqliteDatabase::Access::kCreate);
   const auto feature_sets = FeatureSetsOfTemplates(catalogue);
   const std::int64_t now = internal::SecondsSince1970();
@@ -174,7 +192,6 @@ AnnotationReport StoreAnnotations(const fs::path& library, const TakeChoice& cho
       ++report.passed_over;
       continue;
     }
-    internal::CheckTakeRow(*take, library);
     CheckWithin(row.annotation, *take, place);
     AnnotationOfTake stored{take->id, row.annotation};
     NameTemplate(feature_sets, stored.annotation);
@@ -198,7 +215,8 @@ std::int64_t RemoveAnnotations(const fs::path& library, const TakeChoice& choice
   const Catalogue catalogue(library, SqliteDatabase::Access::kCreate);
   std::int64_t removed = 0;
   SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kWrite);
-  for (const AnnotationOfTake& row : ChosenRows(catalogue, opened, choice)) {
+  for (const AnnotationOfTake& row : RowsOf(ChooseTakesToChange(opened, choice), catalogue)) {
+    if (!row.annotation.is_intact) throw DamageOf(row, library);
     const bool is_meant =
         classes.empty() || std::ranges::find(classes, row.annotation.class_name) != classes.end();
     if (!is_meant) continue;

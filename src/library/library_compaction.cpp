@@ -10,8 +10,10 @@
 #include <tuple>
 #include <utility>
 
+#include "fmt/format.h"
 #include "kinebase/core/folder_flush.h"
 #include "kinebase/core/output_file.h"
+#include "kinebase/core/parallel.h"
 #include "kinebase/library/segment_file.h"
 #include "kinebase/library/take_library.h"
 #include "library/catalogue.h"
@@ -79,8 +81,7 @@ SegmentTake ReadSlot(const SegmentReader& segment, int slot) {
 std::int64_t SlotBytes(const SegmentReader& segment, int slot) {
   constexpr std::int64_t kRowAndGaps = 128;
   constexpr std::int64_t kWord = 8;
-  constexpr std::int64_t kPoses = 144;
-  const std::int64_t column = segment.HasPoses(slot) ? kWord + kPoses : kWord;
+  const std::int64_t column = segment.HasPoses(slot) ? kWord + kPackedPoseBytes : kWord;
   return kRowAndGaps + column * segment.ColumnCount(slot);
 }
 
@@ -101,13 +102,16 @@ class Compactor {
   CompactReport Compact() {
     report_.bytes_before = LibraryBytes(library_);
     report_.segments_before = std::ssize(catalogue_.Segments());
-    RemoveLeftovers();
-    const std::vector<NewSegment> plan = Plan();
+    internal::RemoveLeftovers(library_, catalogue_);
+    NameDamagedRows();
+    // What damaged rows say is not known: what seems to be free may be theirs.
+    const std::vector<NewSegment> plan =
+        report_.failures.empty() ? Plan() : std::vector<NewSegment>();
     for (std::size_t i = 0; i < plan.size(); ++i) {
-      if (options_.progress) options_.progress("compacting", i, plan.size());
+      Report(i, plan.size());
       Write(plan[i]);
     }
-    if (options_.progress) options_.progress("compacting", plan.size(), plan.size());
+    Report(plan.size(), plan.size());
     TidyCatalogue();
     report_.segments_after = std::ssize(catalogue_.Segments());
     report_.bytes_after = LibraryBytes(library_);
@@ -115,50 +119,98 @@ class Compactor {
   }
 
  private:
-  void RemoveLeftovers() const {
-    for (const auto& leftover : internal::FindLeftovers(library_, catalogue_.Segments())) {
-      std::error_code ignored;  // Another attempt will be made.
-      fs::remove(leftover, ignored);
+  void Report(std::size_t done, std::size_t total) const {
+    if (!options_.progress || options_.progress("compacting", done, total)) return;
+    throw Error(ErrorCode::kCancelled, "cancelled");
+  }
+
+  void NameDamagedRows() {
+    for (const StoredTake& take : takes_) {
+      try {
+        internal::CheckTakeRow(take, library_);
+      } catch (const Error& error) {
+        report_.failures.push_back({take.path, error});
+      }
     }
+    const std::int64_t orphans = catalogue_.CountOrphans();
+    if (orphans == 0) return;
+    const fs::path& file = catalogue_.database().file();
+    report_.failures.push_back(
+        {file,
+         {ErrorCode::kMalformedFile,
+          fmt::format("has {} rows that belong to no take; {}", orphans, internal::kDamageRemedy),
+          {.file = file}}});
   }
 
   [[nodiscard]] fs::path PathOf(std::int64_t segment) const {
     return internal::SegmentPath(library_, segment);
   }
 
-  // The slots in use of a segment, all of them checked against checksums and the catalogue.
-  // Errors  For the first that cannot be read: then the file is left as it is.
-  [[nodiscard]] std::vector<int> CheckedSlots(std::int64_t number,
-                                              const SegmentReader& segment) const {
+  // Errors  MalformedFile if the segment has not what the catalogue says of a take.
+  void CheckHolds(const SegmentReader& segment, const Location& place, std::size_t take) const {
+    const auto& features = takes_[take].features;
+    const bool holds = std::ranges::any_of(features, [&](const StoredFeatures& each) {
+      return Location(each.segment, each.slot) == place &&
+             internal::HoldsFeatures(segment, each, takes_[take].content);
+    });
+    if (holds) return;
+    throw Error(ErrorCode::kMalformedFile,
+                "does not hold " + takes_[take].path.string() + " as the catalogue says",
+                {.file = PathOf(place.first)});
+  }
+
+  // The slots in use of a segment, by its table.
+  // Errors  For the first that is not there: then the file is left as it is.
+  [[nodiscard]] std::vector<int> UsedSlots(std::int64_t number,
+                                           const SegmentReader& segment) const {
     std::vector<int> slots;
     for (auto user = users_.lower_bound({number, std::numeric_limits<int>::min()});
          user != users_.end() && user->first.first == number; ++user) {
-      const int slot = user->first.second;
-      for (const std::size_t i : user->second) {
-        internal::CheckTakeRow(takes_[i], library_);
-        if (slot >= 0 && slot < segment.take_count() &&
-            segment.Content(slot) == takes_[i].content) {
-          continue;
-        }
-        throw Error(ErrorCode::kMalformedFile,
-                    "does not hold " + takes_[i].path.string() + " as the catalogue says",
-                    {.file = PathOf(number)});
-      }
-      (void)segment.Columns(slot);
-      if (segment.HasPoses(slot)) (void)segment.Poses(slot);
-      slots.push_back(slot);
+      for (const std::size_t i : user->second) CheckHolds(segment, user->first, i);
+      slots.push_back(user->first.second);
     }
     return slots;
   }
 
-  // Segments that may be written anew, by what may stand together.
+  // Errors  For the first take whose bytes cannot be read.
+  void CheckReadable(const OldSegment& old) const {
+    const SegmentFile file(PathOf(old.number));
+    for (const int slot : old.slots) {
+      (void)file.reader().Columns(slot);
+      if (file.reader().HasPoses(slot)) (void)file.reader().Poses(slot);
+    }
+  }
+
+  // Without segments of which something cannot be read: these are left as they are.
+  void LeaveUnreadable(std::vector<OldSegment>& group) {
+    std::vector<std::optional<Error>> errors(group.size());
+    ParallelFor(group.size(), options_.threads, "checking", options_.progress, [&](std::size_t i) {
+      try {
+        CheckReadable(group[i]);
+      } catch (const Error& error) {
+        errors[i] = error;
+      }
+    });
+    std::vector<OldSegment> readable;
+    readable.reserve(group.size());
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if (errors[i]) {
+        report_.failures.push_back({PathOf(group[i].number), *errors[i]});
+      } else {
+        readable.push_back(std::move(group[i]));
+      }
+    }
+    group = std::move(readable);
+  }
+
+  // Segments that may be written anew, by what may stand together. Only their tables are read.
   std::map<GroupKey, std::vector<OldSegment>> Candidates() {
     std::map<GroupKey, std::vector<OldSegment>> groups;
     for (const std::int64_t number : catalogue_.Segments()) {
       try {
         const SegmentFile file(PathOf(number));
         const SegmentReader& segment = file.reader();
-        OldSegment old{.number = number, .slots = CheckedSlots(number, segment)};
+        OldSegment old{.number = number, .slots = UsedSlots(number, segment)};
         old.has_dead = std::ssize(old.slots) < segment.take_count();
         old.is_small = FileBytes(PathOf(number)) < options_.segment_bytes / 2;
         if (!old.has_dead && !old.is_small) continue;
@@ -173,13 +225,20 @@ class Compactor {
 
   std::vector<NewSegment> Plan() {
     std::vector<NewSegment> plan;
-    for (const auto& [key, group] : Candidates()) {
-      std::vector<NewSegment> packed = Pack(std::get<0>(key), group);
-      const bool frees = std::ranges::any_of(group, &OldSegment::has_dead);
-      if (!frees && packed.size() >= group.size()) continue;  // As small as they can be.
-      std::ranges::move(packed, std::back_inserter(plan));
+    for (auto& [key, group] : Candidates()) {
+      if (!IsWorthwhile(std::get<0>(key), group)) continue;
+      LeaveUnreadable(group);
+      if (!IsWorthwhile(std::get<0>(key), group)) continue;
+      std::ranges::move(Pack(std::get<0>(key), group), std::back_inserter(plan));
     }
     return plan;
+  }
+
+  // Whether a group gets any smaller by being written anew.
+  [[nodiscard]] bool IsWorthwhile(std::uint64_t feature_set_hash,
+                                  std::span<const OldSegment> group) const {
+    return std::ranges::any_of(group, &OldSegment::has_dead) ||
+           Pack(feature_set_hash, group).size() < group.size();
   }
 
   [[nodiscard]] std::vector<NewSegment> Pack(std::uint64_t feature_set_hash,
@@ -246,7 +305,7 @@ class Compactor {
   void TidyCatalogue() {
     SqliteTransaction transaction(catalogue_.database(), SqliteTransaction::Kind::kWrite);
     if (!catalogue_.HasText() || !catalogue_.HasSoundTextIndex()) {
-      catalogue_.database().Execute("DROP TABLE take_text");
+      catalogue_.database().Execute("DROP TABLE IF EXISTS take_text");
       internal::MakeTextTable(catalogue_.database(), "main");
       internal::FillText(catalogue_.database(), takes_);
     }

@@ -82,7 +82,9 @@ std::int64_t ExampleBytes(std::span<const TakeFeatures> takes) {
 LabelledBatch LoadLabelledTakes(const TakeLibrary& library, const TakeFilter& filter,
                                 const ExampleRequest& request) {
   Chosen takes = library.TakesWith(*request.features, request.rate_hz, filter, request.with_poses);
-  std::erase_if(takes, [](const StoredTake* take) { return take->name.class_name.empty(); });
+  std::erase_if(takes, [](const StoredTake* take) {
+    return take->is_intact && take->name.class_name.empty();
+  });
   if (takes.empty()) {
     throw Error(ErrorCode::kNotFound,
                 "the library knows no class of these takes; import a table of clips with --list");

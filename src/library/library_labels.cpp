@@ -7,7 +7,6 @@
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "library/catalogue.h"
-#include "library/damage.h"
 #include "library/library_lock.h"
 #include "library/named_recordings.h"
 
@@ -88,8 +87,7 @@ LabelReport ChangeLabels(const fs::path& library, const TakeChoice& choice,
   const TakeLibrary opened(library);
   LabelReport report;
   std::vector<StoredTake> changed;
-  for (const StoredTake* chosen : ChooseTakes(opened, choice)) {
-    internal::CheckTakeRow(*chosen, library);
+  for (const StoredTake* chosen : ChooseTakesToChange(opened, choice)) {
     CheckWithin(change, *chosen);
     StoredTake take = *chosen;
     report.removed += static_cast<std::int64_t>(Remove(change, take));
@@ -109,7 +107,7 @@ LabelReport AddSegmentLabels(const fs::path& library, const TakeChoice& choice,
   internal::CheckIsLibrary(library);
   const internal::LibraryLock lock(library);
   const TakeLibrary opened(library);
-  const internal::NamedRecordings recordings(ChooseTakes(opened, choice));
+  const internal::NamedRecordings recordings(ChooseTakesToChange(opened, choice));
   LabelReport report;
   std::map<const StoredTake*, StoredTake> changed;
   for (const SegmentLabel& label : labels) {
@@ -119,7 +117,6 @@ LabelReport AddSegmentLabels(const fs::path& library, const TakeChoice& choice,
       ++report.passed_over;
       continue;
     }
-    internal::CheckTakeRow(*take, library);
     const StoredLabel stored = ToStored(label, take->frame_count, place);
     report.added += Add(stored, changed.try_emplace(take, *take).first->second) ? 1 : 0;
   }

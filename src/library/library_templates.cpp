@@ -63,16 +63,19 @@ std::vector<StoredTemplate> ListTemplates(const fs::path& library) {
   return internal::TemplateRows(Catalogue(library, SqliteDatabase::Access::kRead));
 }
 
-MotionTemplate LoadTemplate(const fs::path& library, const std::string& name) {
-  const std::vector<StoredTemplate> templates = ListTemplates(library);
-  const StoredTemplate& stored = Find(templates, name, library);
+MotionTemplate ParseStoredTemplate(const StoredTemplate& stored, const fs::path& library) {
   const fs::path file = internal::CatalogueFile(library);
   if (!stored.is_intact) {
-    throw Error(ErrorCode::kMalformedFile,
-                fmt::format("the template {} is damaged; remove it and add it again", Quoted(name)),
-                {.file = file});
+    throw Error(
+        ErrorCode::kMalformedFile,
+        fmt::format("the template {} is damaged; remove it and add it again", Quoted(stored.name)),
+        {.file = file});
   }
   return ParseTemplate(stored.json, file);
+}
+
+MotionTemplate LoadTemplate(const fs::path& library, const std::string& name) {
+  return ParseStoredTemplate(Find(ListTemplates(library), name, library), library);
 }
 
 MotionTemplate ReadOrLoadTemplate(const fs::path& file_or_name, const fs::path& library) {
@@ -108,9 +111,7 @@ void RemoveTemplates(const fs::path& library, std::span<const std::string> names
   const std::vector<StoredTemplate> templates = internal::TemplateRows(catalogue);
   SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kWrite);
   for (const std::string& name : names) {
-    internal::SqliteStatement(catalogue.database(), "DELETE FROM templates WHERE name = ?1")
-        .Bind(Find(templates, name, library).name)
-        .Run();
+    internal::RemoveTemplate(catalogue, Find(templates, name, library).name);
   }
   transaction.Commit();
 }

@@ -40,6 +40,7 @@ void VerifyCatalogue(const fs::path& library, VerifyReport& report) {
     CheckCatalogue(library, catalogue);
     report.words_are_damaged = !catalogue.HasText();
     report.damaged_records = internal::DamagedRecords(catalogue);
+    report.orphaned_rows = catalogue.CountOrphans();
   }
   if (!catalogue.HasSoundTextIndex()) report.words_are_damaged = true;
 }
@@ -76,7 +77,8 @@ VerifyReport VerifyLibrary(const fs::path& library, int threads, const ProgressC
   for (std::size_t i = 0; i < takes.size(); ++i) {
     if (errors[i]) report.damaged.push_back({takes[i].path, *errors[i]});
   }
-  report.leftovers = internal::FindLeftovers(library, opened.segments());
+  report.leftovers =
+      internal::FindLeftovers(library, Catalogue(library, SqliteDatabase::Access::kRead));
   return report;
 }
 
@@ -87,7 +89,9 @@ std::vector<fs::path> RemoveTakes(const fs::path& library, const Removal& remova
   internal::CheckIsLibrary(library);
   const internal::LibraryLock lock(library);
   const TakeLibrary opened(library);
-  std::vector<const StoredTake*> chosen = ChooseTakes(opened, {removal.names, removal.filter});
+  const TakeChoice choice{removal.names, removal.filter};
+  std::vector<const StoredTake*> chosen =
+      removal.damaged ? ChooseTakes(opened, choice) : ChooseTakesToChange(opened, choice);
   if (removal.damaged) {
     std::erase_if(chosen, [&](const StoredTake* take) { return !IsDamaged(opened, *take); });
   }
@@ -102,6 +106,21 @@ std::vector<fs::path> RemoveTakes(const fs::path& library, const Removal& remova
   std::vector<fs::path> removed;
   removed.reserve(chosen.size());
   for (const StoredTake* take : chosen) removed.push_back(take->path);
+  return removed;
+}
+
+std::vector<std::string> RemoveDamagedRecords(const fs::path& library) {
+  internal::CheckIsLibrary(library);
+  const internal::LibraryLock lock(library);
+  Catalogue catalogue(library, SqliteDatabase::Access::kCreate);
+  SqliteTransaction transaction(catalogue.database(), SqliteTransaction::Kind::kWrite);
+  std::vector<std::string> removed = internal::RemoveDamagedRecords(catalogue);
+  const std::int64_t orphans = catalogue.CountOrphans();
+  catalogue.RemoveOrphans();
+  const std::vector<std::int64_t> unused = catalogue.DropUnusedSegments();
+  transaction.Commit();
+  internal::RemoveSegments(library, unused);
+  if (orphans > 0) removed.push_back(fmt::format("rows that belonged to no take: {}", orphans));
   return removed;
 }
 

@@ -30,7 +30,7 @@ constexpr std::uint64_t kRowBytes = 64;
 constexpr std::uint64_t kChecksumOffset = 56;
 constexpr std::uint64_t kListHeaderBytes = 16;
 constexpr std::uint64_t kPoseHeaderBytes = 32;
-constexpr std::uint64_t kPoseBytes = std::uint64_t{3} * kStandardJointCount * sizeof(std::uint16_t);
+constexpr std::uint64_t kPoseBytes = kPackedPoseBytes;
 
 std::uint64_t Aligned(std::uint64_t offset) {
   return (offset + kAlignment - 1) / kAlignment * kAlignment;

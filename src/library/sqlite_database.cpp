@@ -18,6 +18,7 @@ Error ToError(int result, const char* message, const std::filesystem::path& file
   switch (result & kKindOfResult) {
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
+    case SQLITE_ERROR:  // Of statements that are ours: a table or a column of theirs is missing.
       return {
           ErrorCode::kMalformedFile,
           fmt::format("is no catalogue that can be read ({}); restore it from a copy, or import "

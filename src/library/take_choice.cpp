@@ -5,6 +5,7 @@
 
 #include "fmt/format.h"
 #include "kinebase/core/text_scanner.h"
+#include "library/damage.h"
 
 namespace kinebase {
 namespace {
@@ -31,6 +32,7 @@ fs::path Resolved(const fs::path& name) {
 std::set<std::int64_t> TakesOfNames(const std::vector<fs::path>& names,
                                     const TakeLibrary& library) {
   std::set<std::int64_t> ids;
+  const bool is_sound = std::ranges::all_of(library.takes(), &StoredTake::is_intact);
   for (const fs::path& name : names) {
     const fs::path resolved = Resolved(name);
     bool is_there = false;
@@ -39,7 +41,7 @@ std::set<std::int64_t> TakesOfNames(const std::vector<fs::path>& names,
       ids.insert(take.id);
       is_there = true;
     }
-    if (is_there) continue;
+    if (is_there || !is_sound) continue;
     throw Error(ErrorCode::kNotFound,
                 fmt::format("has no take {}; 'kinebase library list' shows what there is",
                             Quoted(name.string())),
@@ -54,8 +56,30 @@ std::vector<const StoredTake*> ChooseTakes(const TakeLibrary& library, const Tak
   const std::set<std::int64_t> named = TakesOfNames(choice.names, library);
   std::vector<const StoredTake*> takes = library.Choose(choice.filter);
   if (!choice.names.empty()) {
-    std::erase_if(takes, [&](const StoredTake* take) { return !named.contains(take->id); });
+    std::erase_if(takes, [&](const StoredTake* take) {
+      return take->is_intact && !named.contains(take->id);
+    });
   }
+  return takes;
+}
+
+ChosenTakes ChooseIntactTakes(const TakeLibrary& library, const TakeChoice& choice) {
+  ChosenTakes chosen;
+  for (const StoredTake* take : ChooseTakes(library, choice)) {
+    try {
+      internal::CheckTakeRow(*take, library.folder());
+      chosen.takes.push_back(take);
+    } catch (const Error& error) {
+      chosen.failures.push_back({take->path, error});
+    }
+  }
+  return chosen;
+}
+
+std::vector<const StoredTake*> ChooseTakesToChange(const TakeLibrary& library,
+                                                   const TakeChoice& choice) {
+  std::vector<const StoredTake*> takes = ChooseTakes(library, choice);
+  for (const StoredTake* take : takes) internal::CheckTakeRow(*take, library.folder());
   return takes;
 }
 

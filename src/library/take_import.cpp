@@ -133,10 +133,7 @@ class Importer {
         options_(options),
         catalogue_(library, SqliteDatabase::Access::kCreate),
         reading_(options.memory_bytes / 2) {
-    for (const auto& leftover : internal::FindLeftovers(library, catalogue_.Segments())) {
-      std::error_code ignored;  // Another attempt will be made.
-      fs::remove(leftover, ignored);
-    }
+    internal::RemoveLeftovers(library, catalogue_);
     for (StoredTake& take : catalogue_.Takes()) Remember(std::move(take));
   }
 
@@ -328,11 +325,7 @@ class Importer {
     try {
       const SegmentFile file(internal::SegmentPath(library_, features.segment));
       const SegmentReader& segment = file.reader();
-      const bool fits = features.slot >= 0 && features.slot < segment.take_count() &&
-                        segment.Content(features.slot) == content &&
-                        segment.feature_set_hash() == features.feature_set_hash &&
-                        segment.rate_hz() == features.rate_hz;
-      if (!fits) return false;
+      if (!internal::HoldsFeatures(segment, features, content)) return false;
       (void)segment.Columns(features.slot);
       if (features.has_poses) (void)segment.Poses(features.slot);
       return true;

@@ -61,9 +61,15 @@ bool HasFormat(const StoredTake& take, const std::vector<std::string>& formats) 
          });
 }
 
-// Each name of the filter is one that some take has.
+bool HasDamagedRows(const std::vector<StoredTake>& takes) {
+  return std::ranges::any_of(takes, [](const StoredTake& take) { return !take.is_intact; });
+}
+
+// Each name of the filter is one that some take has. Nobody knows where rows are damaged: then
+// these are named.
 void CheckFilter(const TakeFilter& filter, const std::vector<StoredTake>& takes,
                  const fs::path& library) {
+  if (HasDamagedRows(takes)) return;
   std::set<std::string> actors;
   std::set<std::string> classes;
   std::set<std::string> labels;
@@ -97,12 +103,16 @@ const StoredFeatures* FindFeatures(const StoredTake& take, std::uint64_t feature
 void CheckAnyHas(std::span<const StoredTake* const> takes, const FeatureSet& features,
                  double rate_hz, bool with_poses, const fs::path& library) {
   const StoredFeatures* some = nullptr;
+  bool is_known = false;
   for (const StoredTake* take : takes) {
+    if (!take->is_intact) continue;
+    is_known = true;
     const StoredFeatures* found = FindFeatures(*take, features.hash, rate_hz);
     if (found == nullptr) continue;
     if (!with_poses || found->has_poses) return;
     some = found;
   }
+  if (!is_known) return;  // Each of them will be named for its damage.
   throw Error(ErrorCode::kNotFound,
               some != nullptr
                   ? "holds no poses, which are asked for here; import the files again with --poses"
@@ -151,6 +161,11 @@ bool TakeFilter::Accepts(const StoredTake& take) const {
          HasLabel(take, labels) && HasFormat(take, formats);
 }
 
+std::string KeyText(const ContentKey& key) {
+  const bool is_known = key[0] != 0 || key[1] != 0;
+  return is_known ? fmt::format("{:016x}{:016x}", key[1], key[0]) : "";
+}
+
 bool IsLibrary(const fs::path& folder) {
   std::error_code unreachable;
   return fs::is_regular_file(internal::CatalogueFile(folder), unreachable);
@@ -181,7 +196,7 @@ std::vector<const StoredTake*> TakeLibrary::Choose(const TakeFilter& filter) con
   std::vector<std::int64_t> with_text;  // Ascending.
   if (!filter.text.empty()) {
     with_text = Catalogue(folder_, SqliteDatabase::Access::kRead).FindText(filter.text);
-    if (with_text.empty()) {
+    if (with_text.empty() && !HasDamagedRows(takes_)) {
       throw Error(ErrorCode::kNotFound,
                   fmt::format("has no take with the words {} in its name, class, actor, skeleton, "
                               "labels or description",
@@ -193,7 +208,7 @@ std::vector<const StoredTake*> TakeLibrary::Choose(const TakeFilter& filter) con
   chosen.reserve(takes_.size());
   for (const StoredTake& take : takes_) {
     const bool has_text = filter.text.empty() || std::ranges::binary_search(with_text, take.id);
-    if (has_text && filter.Accepts(take)) chosen.push_back(&take);
+    if (!take.is_intact || (has_text && filter.Accepts(take))) chosen.push_back(&take);
   }
   return chosen;
 }
@@ -215,10 +230,7 @@ TakeLibrary::Location TakeLibrary::Find(const StoredTake& take, std::uint64_t fe
   }
   if (const auto* error = std::get_if<Error>(&found->second)) ThrowUnusable(*error);
   const SegmentReader& segment = std::get<SegmentFile>(found->second).reader();
-  const bool fits = features->slot >= 0 && features->slot < segment.take_count() &&
-                    segment.Content(features->slot) == take.content &&
-                    segment.feature_set_hash() == feature_set_hash && segment.rate_hz() == rate_hz;
-  if (!fits) {
+  if (!internal::HoldsFeatures(segment, *features, take.content)) {
     ThrowUnusable({ErrorCode::kMalformedFile,
                    fmt::format("does not hold {} as the catalogue says", take.path.string()),
                    {.file = path}});

@@ -7,6 +7,7 @@
 
 #include <string>
 
+#include "kinebase/library/library_annotations.h"
 #include "kinebase/library/library_compaction.h"
 #include "kinebase/library/library_labels.h"
 #include "kinebase/library/library_upkeep.h"
@@ -196,6 +197,90 @@ TEST(DamagedCatalogue, IsNotTrustedAndMendedByRemovingAndImporting) {
   EXPECT_THAT(RemoveTakes(takes.library(), {.damaged = true}), SizeIs(1));
   EXPECT_EQ(takes.Import().added, 1);
   EXPECT_THAT(VerifyLibrary(takes.library()).damaged, IsEmpty());
+}
+
+// Nobody knows whether a filter means a take whose row is damaged: so each names it.
+TEST(DamagedCatalogue, NamesItsTakesWhateverIsAskedFor) {
+  const MadeUpTakes takes(3);
+  takes.Import();
+  ChangeLabels(takes.library(), {}, {.add = {"gym"}});
+  Execute(takes.library(), "UPDATE takes SET class = 'wawe', actor = 'yx' WHERE id = 1");
+  const TakeLibrary library(takes.library());
+  for (const TakeFilter& filter :
+       {TakeFilter{.classes = {"wave"}}, TakeFilter{.classes = {"kick"}}, TakeFilter{.text = "002"},
+        TakeFilter{.text = "nowhere"}, TakeFilter{.labels = {"gym"}}}) {
+    const ChosenTakes chosen = ChooseIntactTakes(library, {.filter = filter});
+    ASSERT_THAT(chosen.failures, SizeIs(1));
+    EXPECT_THAT(chosen.failures[0].error.what(), HasSubstr("wave_001"));
+    EXPECT_THAT(library.Load(MadeUpTakes::Options().features, 30, filter).failures, SizeIs(1));
+  }
+  EXPECT_THAT(ChooseIntactTakes(library, {.names = {takes.files()[2]}}).takes, SizeIs(1));
+  EXPECT_THAT(ChooseIntactTakes(library, {.names = {takes.files()[2]}}).failures, SizeIs(1));
+  // What is changed is changed whole, or not at all.
+  for (const TakeFilter& filter : {TakeFilter{.classes = {"wave"}}, TakeFilter{.actors = {"yx"}}}) {
+    EXPECT_EQ(ErrorOf([&] { RemoveTakes(takes.library(), {.filter = filter}); }).code(),
+              ErrorCode::kMalformedFile);
+  }
+  EXPECT_THAT(TakeLibrary(takes.library()).takes(), SizeIs(3));
+}
+
+TEST(DamagedCatalogue, FindsAllTakesWhereWordsAreMissing) {
+  const MadeUpTakes takes(3);
+  takes.Import();
+  for (const char* change : {"DELETE FROM take_text WHERE rowid = 2", "DROP TABLE take_text"}) {
+    Execute(takes.library(), change);
+    EXPECT_THAT(TakeLibrary(takes.library()).Choose({.text = "wave"}), SizeIs(3)) << change;
+    EXPECT_TRUE(VerifyLibrary(takes.library()).words_are_damaged);
+  }
+  ChangeLabels(takes.library(), {}, {.add = {"gym"}});  // Whoever writes gets them made.
+  EXPECT_FALSE(VerifyLibrary(takes.library()).words_are_damaged);
+  Execute(takes.library(), "DROP TABLE take_text");
+  CompactLibrary(takes.library());
+  EXPECT_FALSE(VerifyLibrary(takes.library()).words_are_damaged);
+  EXPECT_THAT(TakeLibrary(takes.library()).Choose({.text = "wave gym"}), SizeIs(3));
+}
+
+// Rows that refer to what is not there; SQLite's own check of that would condemn the catalogue.
+TEST(DamagedCatalogue, IsMendedByRemovingWhereRowsReferToNothing) {
+  const MadeUpTakes takes(2);
+  for (const char* change :
+       {"UPDATE features SET segment = 999 WHERE take = 1",
+        "UPDATE features SET feature_set = 999 WHERE take = 1",
+        "UPDATE features SET take = 999 WHERE take = 1", "UPDATE annotations SET take = 999",
+        "UPDATE labels SET take = 999 WHERE take = 1", "UPDATE segments SET id = 999"}) {
+    SCOPED_TRACE(change);
+    fs::remove_all(takes.library());
+    takes.Import();
+    ChangeLabels(takes.library(), {}, {.add = {"gym"}});
+    StoreAnnotations(takes.library(), {},
+                     std::vector<AnnotationRow>{{{.path = takes.files()[0].stem(),
+                                                  .class_name = "wave",
+                                                  .first_frame = 1,
+                                                  .last_frame = 2}}},
+                     "a.csv");
+    Execute(takes.library(), change);
+    const VerifyReport report = VerifyLibrary(takes.library());
+    EXPECT_GT(report.damaged.size() + report.damaged_records.size(), 0U);
+    RemoveTakes(takes.library(), {.damaged = true});
+    RemoveDamagedRecords(takes.library());
+    const VerifyReport mended = VerifyLibrary(takes.library());
+    EXPECT_THAT(mended.damaged, IsEmpty());
+    EXPECT_THAT(mended.damaged_records, IsEmpty());
+    EXPECT_EQ(mended.orphaned_rows, 0);
+    takes.Import();
+    EXPECT_THAT(TakeLibrary(takes.library()).takes(), SizeIs(2));
+    EXPECT_THAT(VerifyLibrary(takes.library()).damaged, IsEmpty());
+  }
+}
+
+TEST(DamagedCatalogue, BlamesNoWordsForTheTakesThatTheyAreOf) {
+  const MadeUpTakes takes(2);
+  takes.Import();
+  ChangeLabels(takes.library(), {.names = {takes.files()[0]}}, {.add = {"gym"}});
+  Execute(takes.library(), "UPDATE labels SET label = 'gim'");
+  const VerifyReport report = VerifyLibrary(takes.library());
+  EXPECT_THAT(report.damaged, SizeIs(1));
+  EXPECT_FALSE(report.words_are_damaged);
 }
 
 TEST(DamagedCatalogue, GetsItsWordsAnewByCompacting) {

@@ -30,6 +30,7 @@ class CompactedLibrary : public testing::Test {
     options.with_poses = true;
     takes_.Import(options);
     before_ = Contents();
+    fs::copy(takes_.library() / "segments", kept_.path() / "segments");
   }
 
   struct Content {
@@ -77,7 +78,15 @@ class CompactedLibrary : public testing::Test {
     return bytes;
   }
 
+  // Puts the catalogue and the segments back that stood in it at the beginning.
+  void Restore(const std::string& catalogue) const {
+    fs::remove_all(takes_.library() / "segments");
+    fs::copy(kept_.path() / "segments", takes_.library() / "segments");
+    test::WriteText(takes_.library() / "catalogue.sqlite", catalogue);
+  }
+
   MadeUpTakes takes_{6};
+  test::TemporaryFolder kept_;
   std::map<std::string, Content> before_;
 };
 
@@ -169,6 +178,52 @@ TEST_F(CompactedLibrary, KeepsSegmentsOfOtherFeaturesApart) {
   takes_.Import(options);
   CompactLibrary(takes_.library());
   ExpectAsBefore(6, 1 + 1);
+}
+
+// A flipped bit in a number makes sound words look like those of nobody.
+TEST_F(CompactedLibrary, FreesNothingWhileARowIsDamaged) {
+  const fs::path catalogue = takes_.library() / "catalogue.sqlite";
+  const std::string good = test::ReadText(catalogue);
+  for (const char* change :
+       {"UPDATE features SET segment = 999 WHERE take = 5; ",
+        "UPDATE features SET segment = 999 WHERE take IN (5, 6)",
+        "UPDATE features SET slot = 0 WHERE take = 6",
+        "UPDATE features SET take = 99 WHERE take = 5", "UPDATE segments SET id = 259 WHERE id = 3",
+        "UPDATE takes SET class = 'x' WHERE id = 1"}) {
+    SCOPED_TRACE(change);
+    const internal::SqliteDatabase database(catalogue, internal::SqliteDatabase::Access::kCreate);
+    database.Execute(change);
+    EXPECT_FALSE(CompactLibrary(takes_.library()).failures.empty());
+    RemoveDamagedRecords(takes_.library());
+    test::WriteMadeUpTake(takes_.folder() / "HDM_xx_wave_007_120.amc", 9, 50);
+    ImportTakes(takes_.library(),
+                std::vector<ImportSource>{{.file = takes_.folder() / "HDM_xx_wave_007_120.amc"}},
+                MadeUpTakes::Options());
+    for (const int number : {1, 2, 3}) EXPECT_TRUE(fs::exists(takes_.Segment(number)));
+    EXPECT_FALSE(RemoveTakes(takes_.library(), {.damaged = true}).empty());
+    EXPECT_THAT(CompactLibrary(takes_.library()).failures, IsEmpty());
+    EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, IsEmpty());
+    Restore(good);
+  }
+}
+
+TEST_F(CompactedLibrary, CanBeCancelled) {
+  for (const std::string_view stage : {"checking", "compacting"}) {
+    const auto stop = [&](std::string_view what, std::size_t, std::size_t) {
+      return what != stage;
+    };
+    EXPECT_EQ(test::ErrorOf([&] { CompactLibrary(takes_.library(), {.progress = stop}); }).code(),
+              ErrorCode::kCancelled);
+    ExpectAsBefore(6, 3);
+  }
+}
+
+// Bytes are only looked at where something is to be gained by writing them anew.
+TEST_F(CompactedLibrary, ReadsNoSegmentThatStaysAsItIs) {
+  CompactLibrary(takes_.library());
+  test::Spoil(takes_.Segment(4), fs::file_size(takes_.Segment(4)) - 1);
+  EXPECT_THAT(CompactLibrary(takes_.library()).failures, IsEmpty());
+  EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, SizeIs(1));
 }
 
 TEST_F(CompactedLibrary, LosesWhatACrashLeft) {

@@ -82,7 +82,7 @@ class StoredAnnotationsTest : public testing::Test {
                             "a.csv");
   }
   [[nodiscard]] std::vector<StoredAnnotation> List(const TakeChoice& choice = {}) const {
-    return ListAnnotations(takes_.library(), choice);
+    return ListAnnotations(takes_.library(), choice).annotations;
   }
 
   MadeUpTakes takes_;
@@ -172,6 +172,17 @@ TEST_F(StoredAnnotationsTest, WithDamageAreNamed) {
               ElementsAre("template 'waving'", HasSubstr("annotation 'wave', frames 3-9")));
   EXPECT_EQ(ErrorOf([&] { (void)LoadTemplate(takes_.library(), "waving"); }).code(),
             ErrorCode::kMalformedFile);
+  // Of whatever take they are asked for: what they belong to is not known either.
+  for (const auto& choice : {TakeChoice(), TakeChoice{.names = {takes_.files()[2]}}}) {
+    const AnnotationList list = ListAnnotations(takes_.library(), choice);
+    EXPECT_THAT(list.annotations, IsEmpty());
+    ASSERT_THAT(list.failures, SizeIs(1));
+    EXPECT_THAT(list.failures[0].error.what(), AllOf(HasSubstr("'wave'"), HasSubstr("--damaged")));
+  }
+  EXPECT_THAT(RemoveDamagedRecords(takes_.library()), SizeIs(2));
+  EXPECT_THAT(VerifyLibrary(takes_.library()).damaged_records, IsEmpty());
+  EXPECT_THAT(ListAnnotations(takes_.library(), {}).failures, IsEmpty());
+  EXPECT_THAT(ListTemplates(takes_.library()), IsEmpty());
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST_F(LibrarySample, OfVersion1IsReadAndNotChanged) {
   EXPECT_THAT(library.Choose({.formats = {"amc"}, .text = "squat"}), SizeIs(1));
   EXPECT_THAT(VerifyLibrary(this->library()).damaged, IsEmpty());
   EXPECT_THAT(ListTemplates(this->library()), IsEmpty());
-  EXPECT_THAT(ListAnnotations(this->library(), {}), IsEmpty());
+  EXPECT_THAT(ListAnnotations(this->library(), {}).annotations, IsEmpty());
   EXPECT_EQ(test::ReadText(this->library() / "catalogue.sqlite"), catalogue);
   ASSERT_THAT(library.takes(), SizeIs(2));
   EXPECT_EQ(library.takes()[0].name.class_name, "kickRFront1Reps");
@@ -84,6 +84,19 @@ TEST_F(LibrarySample, OfVersion1IsReadAndNotChanged) {
       const double truth = *ParseDouble(joints.rows[0][i + 1]);
       EXPECT_NEAR(poses.at(0, static_cast<int>(i / 3))[static_cast<int>(i % 3)], truth, 0.005);
     }
+  }
+}
+
+// Version 1 has no checksums, by which it could be told that somebody else wrote this.
+TEST_F(LibrarySample, OfVersion1WithImpossibleTakesIsRefused) {
+  for (const char* change : {"frames = -5", "frames = 0", "rate_hz = 9e999", "rate_hz = 0"}) {
+    internal::SqliteDatabase(library() / "catalogue.sqlite",
+                             internal::SqliteDatabase::Access::kRead)
+        .Execute(
+            (std::string("UPDATE takes SET ") + change + " WHERE path LIKE '%squat%'").c_str());
+    const Error error = test::ErrorOf([&] { TakeLibrary opened(library()); });
+    EXPECT_EQ(error.code(), ErrorCode::kMalformedFile) << change;
+    EXPECT_THAT(error.what(), testing::HasSubstr("restore it from a copy"));
   }
 }
 
@@ -148,7 +161,7 @@ TEST_F(LibrarySample2, IsRead) {
 TEST_F(LibrarySample2, HoldsATemplateAndAnAnnotation) {
   const MotionTemplate squat = LoadTemplate(library(), "squat1Reps");
   EXPECT_EQ(squat.matrix.feature_count, 39);
-  const auto annotations = ListAnnotations(library(), {});
+  const auto annotations = ListAnnotations(library(), {}).annotations;
   ASSERT_THAT(annotations, SizeIs(1));
   EXPECT_EQ(annotations[0].class_name, "squat1Reps");
   EXPECT_EQ(annotations[0].first_frame, 1);

@@ -137,7 +137,7 @@ TEST_F(DamagedLibrary, WithADamagedCatalogueSaysSo) {
 }
 
 // Numbers that no import writes; places of hits are computed from them.
-TEST_F(DamagedLibrary, WithImpossibleTakesInItsCatalogueSaysSo) {
+TEST_F(DamagedLibrary, WithImpossibleTakesInItsCatalogueLosesThese) {
   const fs::path catalogue = takes_.library() / "catalogue.sqlite";
   const std::string good = test::ReadText(catalogue);
   for (const std::string change : {"frames = -5", "frames = 0", "frames = 9223372036854775807",
@@ -146,15 +146,18 @@ TEST_F(DamagedLibrary, WithImpossibleTakesInItsCatalogueSaysSo) {
     test::WriteText(catalogue, good);
     internal::SqliteDatabase(catalogue, internal::SqliteDatabase::Access::kCreate)
         .Execute(("UPDATE takes SET " + change + " WHERE path LIKE '%wave_002%'").c_str());
-    for (const auto& use : {std::function<void()>([&] { TakeLibrary opened(takes_.library()); }),
-                            std::function<void()>([&] { (void)VerifyLibrary(takes_.library()); }),
-                            std::function<void()>([&] { takes_.Import(); })}) {
-      const Error error = ErrorOf(use);
-      EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
-      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("wave_002_120.amc"),
-                                               HasSubstr("restore it from a copy")));
+    const TakeLibrary library(takes_.library());
+    ASSERT_THAT(library.takes(), SizeIs(3));
+    EXPECT_EQ(library.takes()[1].frame_count, 0);
+    for (const auto& failures : {VerifyLibrary(takes_.library()).damaged, takes_.Import().failures,
+                                 library.Load(MadeUpTakes::Options().features, 30).failures}) {
+      ASSERT_THAT(failures, SizeIs(1));
+      EXPECT_THAT(failures[0].error.what(),
+                  testing::AllOf(HasSubstr("wave_002_120.amc"), HasSubstr("--damaged")));
     }
   }
+  EXPECT_THAT(RemoveTakes(takes_.library(), {.damaged = true}), SizeIs(1));
+  EXPECT_EQ(takes_.Import().added, 1);
 }
 
 TEST_F(DamagedLibrary, WhoseNumbersHaveRunOutTakesNoMore) {

@@ -51,11 +51,17 @@ struct AnnotationReport {
 };
 
 // Errors of all: those of TakeLibrary and ChooseTakes; of those that change something IoFailure if
-// somebody else is writing. A change is made whole or not at all, whatever happens.
+// somebody else is writing, MalformedFile for a take or an annotation whose row is damaged. A
+// change is made whole or not at all, whatever happens.
 
-// By path, first frame and class. None for a library of version 1.
-[[nodiscard]] std::vector<StoredAnnotation> ListAnnotations(const std::filesystem::path& library,
-                                                            const TakeChoice& choice);
+// None for a library of version 1.
+struct AnnotationList {
+  std::vector<StoredAnnotation> annotations;  // By path, first frame and class; all intact.
+  // Takes and annotations that are not, whatever was chosen; without a path where it is not known.
+  std::vector<TakeFailure> failures;
+};
+[[nodiscard]] AnnotationList ListAnnotations(const std::filesystem::path& library,
+                                             const TakeChoice& choice);
 
 // Adds the rows to the chosen takes that they name, by path or by the name of the file. One of the
 // same stretch, class and template is replaced. A row without a template has that of the library

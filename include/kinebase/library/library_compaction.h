@@ -16,6 +16,7 @@ struct CompactOptions {
   // What a segment file grows to; those of less than half are joined. Also the memory that this
   // needs, three times over.
   std::int64_t segment_bytes = std::int64_t{32} << 20;
+  int threads = 0;
   ProgressCallback progress;
 };
 
@@ -24,7 +25,8 @@ struct CompactReport {
   std::int64_t segments_after = 0;
   std::int64_t bytes_before = 0;  // Of segments, catalogue and what an import left.
   std::int64_t bytes_after = 0;
-  // Segment files that were left as they are, as something in them cannot be read.
+  // Segment files that were left as they are, as something in them cannot be read; or takes whose
+  // rows of the catalogue are damaged: then all of them were left.
   std::vector<TakeFailure> failures;
 };
 
@@ -34,9 +36,8 @@ struct CompactReport {
 // take stays where it was or is where it came to.
 //
 // Errors  Those of TakeLibrary; IoFailure if somebody else is writing, or the disk is full;
-// MalformedFile
-//         for a damaged catalogue; Cancelled. What was done so far stays.
-// Cost    O(bytes of the files that are written anew and of the catalogue).
+//         MalformedFile for a damaged catalogue; Cancelled. What was done so far stays.
+// Cost    O(bytes of the files that are written anew, twice, and of the catalogue).
 CompactReport CompactLibrary(const std::filesystem::path& library,
                              const CompactOptions& options = {});
 

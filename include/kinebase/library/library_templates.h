@@ -29,6 +29,10 @@ struct StoredTemplate {
 // By name. None for a library of version 1.
 [[nodiscard]] std::vector<StoredTemplate> ListTemplates(const std::filesystem::path& library);
 
+// One of a list. Errors  MalformedFile if it is damaged.
+[[nodiscard]] MotionTemplate ParseStoredTemplate(const StoredTemplate& stored,
+                                                 const std::filesystem::path& library);
+
 // Errors  NotFound, naming those that there are; MalformedFile if it is damaged.
 [[nodiscard]] MotionTemplate LoadTemplate(const std::filesystem::path& library,
                                           const std::string& name);

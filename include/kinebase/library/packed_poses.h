@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "kinebase/motion/motion.h"
+#include "kinebase/motion/standard_skeleton.h"
 
 namespace kinebase {
+
+// Of one frame.
+inline constexpr int kPackedPoseBytes = 3 * kStandardJointCount * int{sizeof(std::uint16_t)};
 
 // A coordinate is offset + step · value. The step is the take's largest extent along an axis
 // divided by 65535, so that a coordinate is at most half a step off: 0.08 mm in a take that covers

@@ -57,6 +57,9 @@ struct TakeOrigin {
   friend bool operator==(const TakeOrigin&, const TakeOrigin&) = default;
 };
 
+// 32 hexadecimal digits; "" for none.
+[[nodiscard]] std::string KeyText(const ContentKey& key);
+
 // What the catalogue knows of a take.
 struct StoredTake {
   std::int64_t id = 0;
@@ -71,7 +74,9 @@ struct StoredTake {
   TakeOrigin origin;
   std::vector<StoredLabel> labels;       // In their order.
   std::vector<StoredFeatures> features;  // At least one.
-  bool is_intact = true;                 // Whether all this is what was written, by its checksum.
+  // Whether all this is what was written, by its checksum. If not, nothing of it is to be relied
+  // on; there are then 0 frames at 1 Hz, so that nobody counts with them.
+  bool is_intact = true;
 };
 
 // Which takes are meant: those that each of these accepts. What is empty accepts all; of several
@@ -119,9 +124,11 @@ class TakeLibrary {
   [[nodiscard]] std::int64_t segment_bytes() const { return segment_bytes_; }
   [[nodiscard]] std::vector<std::int64_t> segments() const;  // Their numbers.
 
-  // The takes that the filter accepts, by path; may be none.
+  // The takes that the filter accepts, by path; may be none. Takes that are not intact are among
+  // them whatever it asks for, as nobody knows whether it means them: using them fails.
   // Errors  NotFound for a name of the filter that no take has, naming those that there are, and
-  //         for a text that is nowhere; with a text those of the constructor.
+  //         for a text that is nowhere, where all takes are intact; with a text those of the
+  //         constructor.
   [[nodiscard]] std::vector<const StoredTake*> Choose(const TakeFilter& filter) const;
 
   // The words of a take where they are in its segment file; valid as long as the library lives.
