@@ -12,7 +12,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
-#include "cli/take_filter.h"
+#include "cli/take_source_options.h"
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/text_scanner.h"
@@ -29,10 +29,7 @@ struct AnnotateOptions {
   CommonOptions common;
   std::vector<fs::path> templates;
   std::vector<std::string> classes;  // "NAME=FILE".
-  std::vector<fs::path> paths;
-  fs::path library;  // Instead of paths.
-  TakeFilter filter;
-  std::uint64_t memory_bytes = kDefaultMemoryBytes;
+  TakeSourceOptions source;
   std::vector<fs::path> background;
   std::optional<double> tau;
   std::optional<double> confidence;
@@ -78,7 +75,7 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
   if (options.templates.empty() && options.classes.empty()) {
     throw UsageError("annotate needs templates: TEMPLATE, or --class NAME=FILE");
   }
-  if (options.paths.empty() && options.library.empty()) {
+  if (!options.source.is_given()) {
     throw UsageError("--in is required, or --library; see 'kinebase annotate --help'");
   }
   if (options.tau && !options.background.empty()) {
@@ -109,17 +106,6 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
 void SetThreshold(Query& query, double tau) {
   query.search.tau = tau;
   query.motion_template.tau = tau;
-}
-
-std::int64_t MemoryOf(const AnnotateOptions& options) {
-  return static_cast<std::int64_t>(options.memory_bytes);
-}
-
-TakeSource SourceOf(const AnnotateOptions& options) {
-  if (!options.library.empty()) return {options.library, options.filter, MemoryOf(options)};
-  std::vector<TakeStretch> stretches;
-  for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
-  return {std::move(stretches), options.common.load};
 }
 
 Query LoadQuery(const fs::path& file, std::string class_name, const AnnotateOptions& options) {
@@ -160,7 +146,7 @@ std::vector<Query> LoadQueries(const AnnotateOptions& options, std::vector<std::
 void ChooseThresholds(std::vector<Query>& queries, const AnnotateOptions& options,
                       const ProgressCallback& progress, std::vector<TakeFailure>& failures) {
   const std::vector<TakeSource> background =
-      SourcesIn(options.background, options.common.load, MemoryOf(options));
+      SourcesIn(options.background, options.common.load, options.source.memory_limit());
   BackgroundThresholds found =
       FindThresholds(background, queries, options.common.threads, progress);
   failures = std::move(found.failures);
@@ -414,7 +400,7 @@ int Run(const AnnotateOptions& options) {
     annotation.thresholds.push_back(
         {query.motion_template.name, query.class_name, query.search.tau});
   }
-  AnnotatedTakes annotated = AnnotateTakes(SourceOf(options), queries,
+  AnnotatedTakes annotated = AnnotateTakes(SourceOf(options.source, options.common.load), queries,
                                            {.tracks = tracks,
                                             .merge_s = options.merge_s,
                                             .threads = options.common.threads,
@@ -442,15 +428,7 @@ void AddWhatToFind(CLI::App& command, AnnotateOptions& options) {
                      "Template files, from learn; those of one name are one class");
   command.add_option("--class", options.classes, "A template of a class of this name")
       ->type_name("NAME=FILE");
-  auto* paths = command.add_option("--in", options.paths, "Motion files and folders to annotate")
-                    ->type_name("PATH");
-  auto* library = command
-                      .add_option("--library", options.library,
-                                  "Library to annotate instead, from kinebase import")
-                      ->excludes(paths)
-                      ->type_name("FOLDER");
-  for (CLI::Option* filter : AddTakeFilterOptions(command, options.filter)) filter->needs(library);
-  AddMemoryOption(command, options.memory_bytes);
+  AddSourceOptions(command, options.source, "annotate");
   command
       .add_option("--tau", options.tau,
                   "Largest cost of all classes (default: each template's own, else 0.06)")

@@ -1,10 +1,6 @@
 // kinebase search: every place where a motion class happens.
 
-#include <algorithm>
-#include <iterator>
-#include <map>
 #include <memory>
-#include <numeric>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -12,14 +8,12 @@
 #include "cli/feature_options.h"
 #include "cli/search_curve.h"
 #include "cli/search_output.h"
-#include "cli/take_filter.h"
+#include "cli/take_source_options.h"
 #include "fmt/format.h"
-#include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
 #include "kinebase/features/vocabulary.h"
 #include "kinebase/library/library_templates.h"
-#include "kinebase/library/take_search.h"
-#include "kinebase/library/take_source.h"
+#include "kinebase/library/source_search.h"
 #include "kinebase/templates/calibration.h"
 #include "kinebase/templates/keyframes.h"
 #include "kinebase/templates/quantized_template.h"
@@ -31,10 +25,7 @@ namespace {
 struct SearchCommandOptions {
   CommonOptions common;
   std::vector<std::filesystem::path> templates;
-  std::vector<std::filesystem::path> paths;
-  std::filesystem::path library;  // Instead of paths.
-  TakeFilter filter;
-  std::uint64_t memory_bytes = kDefaultMemoryBytes;
+  TakeSourceOptions source;
   std::optional<double> tau;
   std::optional<double> confidence;
   std::size_t most_hits = 500;
@@ -73,7 +64,7 @@ void CheckUsage(const SearchCommandOptions& options) {
     throw UsageError(fmt::format("--json and --format {} both ask for standard output; leave one",
                                  options.format));
   }
-  if (options.paths.empty() && options.library.empty()) {
+  if (!options.source.is_given()) {
     throw UsageError("--in is required, or --library; see 'kinebase search --help'");
   }
   if (options.fuzzy && options.features.empty()) {
@@ -88,29 +79,7 @@ void CheckUsage(const SearchCommandOptions& options) {
 
 constexpr std::uint64_t kMostFaults = 1000;
 
-// A template that is ready to be searched for.
-struct Query {
-  MotionTemplate motion_template;
-  FeatureSet features;
-  std::optional<FuzzyQuery> fuzzy;
-};
-
-// How much of the recordings was looked at, in columns of all templates.
-struct Coverage {
-  std::int64_t searched = 0;
-  std::int64_t all = 0;
-
-  [[nodiscard]] double share() const {
-    return all == 0 ? 1 : static_cast<double>(searched) / static_cast<double>(all);
-  }
-};
-
-// The recordings with the features of one set at one rate; templates that agree in both share them.
-using FeatureKey = std::pair<std::uint64_t, double>;
-
-FeatureKey KeyOf(const Query& query) {
-  return {query.features.hash, query.motion_template.matrix.rate_hz};
-}
+using Query = SearchQuery;
 
 // Those of another template file, made for the same template.
 std::vector<Keyframe> KeyframesOfFile(const std::filesystem::path& path,
@@ -164,7 +133,7 @@ FuzzyQuery FuzzyQueryOf(const Query& query, const SearchCommandOptions& options)
 }
 
 Query LoadQuery(const std::filesystem::path& path, const SearchCommandOptions& options) {
-  Query query{.motion_template = ReadOrLoadTemplate(path, options.library)};
+  Query query{.motion_template = ReadOrLoadTemplate(path, options.source.library)};
   query.features = FeatureSetOfTemplate(path, query.motion_template, options.feature_set);
   SetKeyframes(query, options);
   if (options.mirror) query.motion_template = MirrorTemplate(query.motion_template, query.features);
@@ -197,189 +166,14 @@ double ThresholdOf(const MotionTemplate& motion_template, const SearchCommandOpt
   return options.tau.value_or(motion_template.tau.value_or(kDefaultTau));
 }
 
-// The queries that share the features of one set at one rate, by index; those with keyframes of
-// their own, and those that know what sets their class off: rivals are searched together.
-struct QueryGroup {
-  FeatureKey key;
-  std::vector<std::size_t> queries;
-  std::vector<std::size_t> preselected;
-  std::vector<std::size_t> rivals;
-};
-
-std::vector<QueryGroup> GroupQueries(std::span<const Query> queries) {
-  std::map<FeatureKey, QueryGroup> groups;
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    QueryGroup& group = groups[KeyOf(queries[i])];
-    group.key = KeyOf(queries[i]);
-    group.queries.push_back(i);
-    if (queries[i].motion_template.contrast) {
-      group.rivals.push_back(i);
-    } else if (!queries[i].motion_template.keyframes.empty() && !queries[i].fuzzy) {
-      group.preselected.push_back(i);
-    }
-  }
-  std::vector<QueryGroup> all;
-  all.reserve(groups.size());
-  for (auto& [key, group] : groups) all.push_back(std::move(group));
-  return all;
-}
-
-// What is known of the takes once they have been searched.
-struct SearchedTakes {
-  std::size_t takes = 0;
-  std::int64_t frames = 0;
-  std::vector<std::filesystem::path> files;  // Where labels are to be compared with.
-  std::vector<std::pair<std::filesystem::path, Diagnostics>> diagnostics;
-  std::vector<TakeFailure> failures;
-};
-
-// All queries over all takes, some of these at a time.
-class Search {
- public:
-  Search(std::span<const Query> queries, const SearchCommandOptions& options)
-      : queries_(queries),
-        options_(options),
-        groups_(GroupQueries(queries)),
-        progress_(MakeProgress(options.common)),
-        curves_(options.curve, queries.size()),
-        best_(queries.size()) {}
-
-  void Run(const TakeSource& source) {
-    for (const QueryGroup& group : groups_) {
-      TakeRequest request{.features = &queries_[group.queries.front()].features,
-                          .rate_hz = group.key.second,
-                          .with_poses = !group.rivals.empty(),
-                          .threads = options_.common.threads,
-                          .progress = progress_};
-      for (const std::size_t i : group.preselected) {
-        const MotionTemplate& each = queries_[i].motion_template;
-        request.keyframes.push_back({each.keyframes, each.matrix.column_count()});
-      }
-      request.only_preselected =
-          group.preselected.size() == group.queries.size() && options_.curve.empty();
-      const bool is_first = &group == &groups_.front();  // All read the same files.
-      auto failures = source.Visit(request, [&](const TakesAtHand& at_hand) {
-        if (is_first) Remember(at_hand);
-        SearchGroup(group, at_hand);
-      });
-      if (is_first) takes_.failures = std::move(failures);
-    }
-  }
-
-  // The best of all, those of rivals behind the others where they score the same.
-  [[nodiscard]] std::vector<NamedHit> Best() {
-    std::vector<std::size_t> order(queries_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) {
-      const Query& query = queries_[i];
-      return query.motion_template.contrast ? std::optional(KeyOf(query)) : std::nullopt;
-    });
-    std::vector<NamedHit> hits;
-    for (const std::size_t i : order) std::ranges::move(best_[i], std::back_inserter(hits));
-    KeepBest(hits);
-    return hits;
-  }
-
-  [[nodiscard]] const SearchedTakes& takes() const { return takes_; }
-  [[nodiscard]] const Coverage& coverage() const { return coverage_; }
-  [[nodiscard]] CurveFile& curves() { return curves_; }
-
- private:
-  void Remember(const TakesAtHand& at_hand) {
-    takes_.takes += at_hand.takes.size();
-    for (const TakeView& take : at_hand.takes) {
-      takes_.frames += take.frame_count;
-      if (!options_.labels.empty()) takes_.files.push_back(*take.path);
-      if (take.diagnostics != nullptr && !take.diagnostics->empty()) {
-        takes_.diagnostics.emplace_back(*take.path, *take.diagnostics);
-      }
-    }
-  }
-
-  void SearchGroup(const QueryGroup& group, const TakesAtHand& at_hand) {
-    for (const std::size_t i : group.queries) {
-      if (!options_.curve.empty()) {
-        curves_.Add(queries_[i].motion_template, ThresholdOf(queries_[i].motion_template, options_),
-                    i, at_hand.takes);
-      }
-      if (queries_[i].motion_template.contrast) continue;
-      const auto place = std::ranges::find(group.preselected, i);
-      const bool is_preselected = place != group.preselected.end();
-      Keep(i, at_hand,
-           is_preselected
-               ? SearchStretches(i, at_hand, at_hand.stretches[place - group.preselected.begin()])
-               : SearchAll(i, at_hand));
-    }
-    if (group.rivals.empty()) return;
-    std::vector<MotionTemplate> templates;
-    templates.reserve(group.rivals.size());
-    for (const std::size_t i : group.rivals) templates.push_back(queries_[i].motion_template);
-    const auto found = RankTakes(templates, at_hand.takes,
-                                 {.tau = options_.tau,
-                                  .most_hits = options_.most_hits,
-                                  .threads = options_.common.threads,
-                                  .progress = ProgressOfSearch()});
-    for (std::size_t t = 0; t < found.size(); ++t) Keep(group.rivals[t], at_hand, found[t]);
-  }
-
-  std::vector<TakeHit> SearchAll(std::size_t i, const TakesAtHand& at_hand) {
-    coverage_.all += at_hand.columns;
-    coverage_.searched += at_hand.columns;
-    if (queries_[i].fuzzy) {
-      return SearchTakes(*queries_[i].fuzzy, at_hand.takes,
-                         {.faults = options_.faults, .most_hits = options_.most_hits});
-    }
-    return SearchTakes(Quantize(queries_[i].motion_template), at_hand.takes, OptionsOf(i));
-  }
-
-  std::vector<TakeHit> SearchStretches(std::size_t i, const TakesAtHand& at_hand,
-                                       std::span<const Stretch> stretches) {
-    coverage_.all += at_hand.columns;
-    coverage_.searched += CountColumns(stretches);
-    return SearchTakes(Quantize(queries_[i].motion_template), at_hand.takes, stretches,
-                       OptionsOf(i));
-  }
-
-  [[nodiscard]] SearchOptions OptionsOf(std::size_t i) const {
-    return {.tau = ThresholdOf(queries_[i].motion_template, options_),
-            .most_hits = options_.most_hits,
-            .threads = options_.common.threads,
-            .progress = ProgressOfSearch()};
-  }
-
-  // A library's takes are counted as they come.
-  [[nodiscard]] ProgressCallback ProgressOfSearch() const {
-    return options_.library.empty() ? progress_ : ProgressCallback();
-  }
-
-  void Keep(std::size_t i, const TakesAtHand& at_hand, const std::vector<TakeHit>& found) {
-    for (const TakeHit& hit : found) {
-      best_[i].push_back({i, queries_[i].motion_template.name, *at_hand.takes[hit.take].path, hit});
-    }
-    KeepBest(best_[i]);
-  }
-
-  // By score; of equals those that came first.
-  void KeepBest(std::vector<NamedHit>& hits) const {
-    std::ranges::stable_sort(hits, {}, [](const NamedHit& named) { return named.hit.score; });
-    if (hits.size() > options_.most_hits) hits.resize(options_.most_hits);
-  }
-
-  std::span<const Query> queries_;
-  const SearchCommandOptions& options_;
-  std::vector<QueryGroup> groups_;
-  ProgressCallback progress_;
-  CurveFile curves_;
-  std::vector<std::vector<NamedHit>> best_;  // [query]
-  SearchedTakes takes_;
-  Coverage coverage_;
-};
-
-void Show(const std::vector<NamedHit>& hits, const SearchedTakes& takes, const Coverage& coverage,
-          double elapsed_s, const SearchCommandOptions& options) {
+void Show(const SourceHits& found, const std::vector<NamedHit>& hits, double elapsed_s,
+          const SearchCommandOptions& options) {
+  const double share = found.all_columns == 0 ? 1
+                                              : static_cast<double>(found.searched_columns) /
+                                                    static_cast<double>(found.all_columns);
   if (options.Format() == "json") {
-    Json json = HitsToJson(hits, takes.failures, takes.frames, elapsed_s);
-    if (options.keyframes != "none") json["searched_share"] = coverage.share();
+    Json json = HitsToJson(hits, found.failures, found.frames, elapsed_s);
+    if (options.keyframes != "none") json["searched_share"] = share;
     PrintJson(json);
     return;
   }
@@ -389,25 +183,34 @@ void Show(const std::vector<NamedHit>& hits, const SearchedTakes& takes, const C
     Print(HitsToText(hits, options.templates.size() > 1));
   }
   PrintNote(options.common, fmt::format("{} in {} frames of {}, {:.2f} s",
-                                        FormatCount(std::ssize(hits), "hit", "hits"), takes.frames,
-                                        FormatCount(static_cast<std::int64_t>(takes.takes),
+                                        FormatCount(std::ssize(hits), "hit", "hits"), found.frames,
+                                        FormatCount(static_cast<std::int64_t>(found.takes),
                                                     "recording", "recordings"),
                                         elapsed_s));
-  if (coverage.searched < coverage.all) {
+  if (found.searched_columns < found.all_columns) {
     PrintNote(options.common,
               fmt::format("keyframes left {:.1f} % of the columns to search; motion that does not "
                           "show them is missed (--keyframes none searches everything)",
-                          100 * coverage.share()));
+                          100 * share));
   }
 }
 
-TakeSource SourceOf(const SearchCommandOptions& options) {
-  if (!options.library.empty()) {
-    return {options.library, options.filter, static_cast<std::int64_t>(options.memory_bytes)};
+std::vector<NamedHit> WithNames(const SourceHits& found, std::span<const Query> queries) {
+  std::vector<NamedHit> hits;
+  hits.reserve(found.hits.size());
+  for (const SourceHit& each : found.hits) {
+    hits.push_back({each.query, queries[each.query].motion_template.name, each.file, each.hit});
   }
-  std::vector<TakeStretch> stretches;
-  for (auto& file : FindMotionFiles(options.paths)) stretches.push_back({.file = std::move(file)});
-  return {std::move(stretches), options.common.load};
+  return hits;
+}
+
+SourceSearchOptions SearchOptionsOf(const SearchCommandOptions& options) {
+  return {.tau = options.tau,
+          .most_hits = options.most_hits,
+          .faults = options.faults,
+          .threads = options.common.threads,
+          .progress = MakeProgress(options.common),
+          .on_takes = {}};
 }
 
 int Run(const SearchCommandOptions& options) {
@@ -418,21 +221,27 @@ int Run(const SearchCommandOptions& options) {
   for (const auto& path : options.templates) queries.push_back(LoadQuery(path, options));
   std::vector<SegmentLabel> labels;
   if (!options.labels.empty()) labels = ReadSegmentLabels(options.labels);
-  const TakeSource source = SourceOf(options);
+  const TakeSource source = SourceOf(options.source, options.common.load);
 
-  Search search(queries, options);
-  search.Run(source);
-  const std::vector<NamedHit> hits = search.Best();
-  const SearchedTakes& takes = search.takes();
-  for (const auto& failure : takes.failures) PrintError(failure.error.what());
-  if (takes.takes == 0) return kCouldNot;
-  for (const auto& [file, diagnostics] : takes.diagnostics) {
+  CurveFile curves(options.curve, queries.size());
+  SourceSearchOptions search = SearchOptionsOf(options);
+  if (!options.curve.empty()) {
+    search.on_takes = [&](std::size_t i, std::span<const TakeView> takes) {
+      const MotionTemplate& motion_template = queries[i].motion_template;
+      curves.Add(motion_template, ThresholdOf(motion_template, options), i, takes);
+    };
+  }
+  const SourceHits found = SearchSource(source, queries, search);
+  for (const auto& failure : found.failures) PrintError(failure.error.what());
+  if (found.takes == 0) return kCouldNot;
+  for (const auto& [file, diagnostics] : found.diagnostics) {
     PrintDiagnostics(options.common, file, diagnostics);
   }
-  if (!options.labels.empty()) CheckLabels(labels, takes.files, options.labels);
-  if (!options.curve.empty()) search.curves().Write(hits, labels, options.common.overwrite());
-  Show(hits, takes, search.coverage(), watch.seconds(), options);
-  return takes.failures.empty() ? kDone : kPartFailed;
+  if (!options.labels.empty()) CheckLabels(labels, curves.files(), options.labels);
+  const std::vector<NamedHit> hits = WithNames(found, queries);
+  if (!options.curve.empty()) curves.Write(hits, labels, options.common.overwrite());
+  Show(found, hits, watch.seconds(), options);
+  return found.failures.empty() ? kDone : kPartFailed;
 }
 
 // What a fuzzy search does not know cannot be asked of it.
@@ -465,17 +274,8 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   CLI::App* command =
       program.add_subcommand("search", "Find every place where a motion class happens");
   command->add_option("TEMPLATE", options->templates, "Template files, from learn")->required();
-  auto* paths = command->add_option("--in", options->paths, "Motion files and folders to search")
-                    ->type_name("PATH");
-  auto* library = command
-                      ->add_option("--library", options->library,
-                                   "Library to search instead, from kinebase import")
-                      ->excludes(paths)
-                      ->type_name("FOLDER");
-  for (CLI::Option* filter : AddTakeFilterOptions(*command, options->filter)) {
-    filter->needs(library);
-  }
-  AddMemoryOption(*command, options->memory_bytes)->needs(library);
+  auto* library = AddSourceOptions(*command, options->source, "search");
+  command->get_option("--memory")->needs(library);
   command
       ->add_option("--tau", options->tau,
                    "Largest cost of a hit (default: the template's own, else 0.06); 1 lists all")

@@ -30,6 +30,9 @@ class CurveFile {
   void Add(const MotionTemplate& motion_template, double tau, std::size_t which,
            std::span<const TakeView> takes);
 
+  // Of the takes of a picture.
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
+
   // labels  May be empty; those of other recordings are passed over.
   // Errors  Those of DrawDeltaCurves.
   void Write(const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels,

@@ -99,6 +99,12 @@ const StoredFeatures* FindFeatures(const StoredTake& take, std::uint64_t feature
   return found == take.features.end() ? nullptr : &*found;
 }
 
+// Of those that some take has.
+std::string NameOfSet(const std::vector<StoredFeatureSet>& sets, std::uint64_t hash) {
+  const auto set = std::ranges::find(sets, hash, &StoredFeatureSet::hash);
+  return set == sets.end() ? "of this template" : set->name;
+}
+
 // One word for all of them is clearer than the same of each take.
 void CheckAnyHas(std::span<const StoredTake* const> takes, const FeatureSet& features,
                  double rate_hz, bool with_poses, const fs::path& library) {
@@ -220,7 +226,9 @@ TakeLibrary::Location TakeLibrary::Find(const StoredTake& take, std::uint64_t fe
   if (features == nullptr) {
     throw Error(
         ErrorCode::kNotFound,
-        fmt::format("was not imported with this feature set at {:g} Hz; import it again", rate_hz),
+        fmt::format("was not imported with the feature set '{}' at {:g} Hz; import it again with "
+                    "--feature-set and --rate",
+                    NameOfSet(feature_sets_, feature_set_hash), rate_hz),
         {.file = take.path});
   }
   const fs::path path = internal::SegmentPath(folder_, features->segment);

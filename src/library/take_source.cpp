@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "kinebase/core/error.h"
@@ -12,7 +14,6 @@
 namespace kinebase {
 namespace {
 
-using Visitor = std::function<void(const TakesAtHand&)>;
 using Chosen = std::span<const StoredTake* const>;
 
 constexpr std::int64_t kShareOfMemory = 4;
@@ -29,15 +30,21 @@ std::int64_t ColumnsOf(const StoredTake& take, double rate_hz) {
 }
 
 // The takes from `begin` on that are at hand together: at least one.
-std::size_t EndOfGroup(Chosen takes, std::size_t begin, const TakeRequest& request,
+std::size_t EndOfGroup(Chosen takes, std::size_t begin, std::span<const TakeRequest> requests,
                        std::int64_t memory_bytes) {
-  const std::int64_t bytes = kBytesOfAColumn + (request.with_poses ? kBytesOfAPose : 0);
-  const std::int64_t most = std::min(memory_bytes / kShareOfMemory / bytes, kMostColumns);
-  std::int64_t columns = 0;
+  std::int64_t bytes = 0;
+  std::int64_t columns = 0;  // Of the request that has most.
   std::size_t end = begin;
   for (; end < takes.size() && static_cast<std::int64_t>(end - begin) < kMostTakes; ++end) {
-    columns += ColumnsOf(*takes[end], request.rate_hz);
-    if (columns > most && end > begin) break;
+    std::int64_t most = 0;
+    for (const TakeRequest& request : requests) {
+      const std::int64_t of_take = ColumnsOf(*takes[end], request.rate_hz);
+      bytes += of_take * (kBytesOfAColumn + (request.with_poses ? kBytesOfAPose : 0));
+      most = std::max(most, of_take);
+    }
+    columns += most;
+    const bool fits = bytes <= memory_bytes / kShareOfMemory && columns <= kMostColumns;
+    if (!fits && end > begin) break;
   }
   return end;
 }
@@ -99,18 +106,30 @@ class StoredReader {
   std::vector<FeatureGroup> groups_;
 };
 
-// What could be read of a group, as it is visited; the rest goes to the failures.
-TakesAtHand Gather(Chosen takes, const std::vector<ReadTake>& read, std::size_t queries,
-                   std::vector<TakeFailure>& failures) {
+// Those that could not be read, each once for each thing that is wrong with it.
+class Failures {
+ public:
+  void Add(const std::filesystem::path& path, const Error& error) {
+    if (known_.emplace(path, error.what()).second) all_.push_back({path, error});
+  }
+  std::vector<TakeFailure> Take() { return std::move(all_); }
+
+ private:
+  std::set<std::pair<std::filesystem::path, std::string>> known_;
+  std::vector<TakeFailure> all_;
+};
+
+using Read = std::vector<ReadTake>;
+
+// What could be read of a group, as it is visited.
+TakesAtHand Gather(Chosen takes, std::size_t first, const Read& read, std::size_t queries) {
   TakesAtHand at_hand;
   at_hand.takes.reserve(takes.size());
+  at_hand.places.reserve(takes.size());
   at_hand.stretches.resize(queries);
   for (std::size_t i = 0; i < takes.size(); ++i) {
+    if (read[i].error) continue;
     const StoredTake& take = *takes[i];
-    if (read[i].error) {
-      failures.push_back({take.path, *read[i].error});
-      continue;
-    }
     const int index = static_cast<int>(at_hand.takes.size());
     TakeView& view = at_hand.takes.emplace_back();
     view.path = &take.path;
@@ -119,6 +138,7 @@ TakesAtHand Gather(Chosen takes, const std::vector<ReadTake>& read, std::size_t 
     view.frame_count = take.frame_count;
     view.features = read[i].features;
     view.poses = &read[i].poses;
+    at_hand.places.push_back(first + i);
     at_hand.columns += read[i].columns;
     for (std::size_t query = 0; query < queries; ++query) {
       for (Stretch stretch : read[i].stretches[query]) {
@@ -128,6 +148,20 @@ TakesAtHand Gather(Chosen takes, const std::vector<ReadTake>& read, std::size_t 
     }
   }
   return at_hand;
+}
+
+// Where the takes of a batch are among the stretches that were asked for, in the same order.
+std::vector<std::size_t> PlacesOf(const TakeBatch& batch, std::span<const TakeStretch> stretches) {
+  std::vector<std::size_t> places;
+  places.reserve(batch.takes.size());
+  for (std::size_t i = 0; i < stretches.size() && places.size() < batch.takes.size(); ++i) {
+    const TakeStretch& read = batch.takes[places.size()].stretch;
+    if (read.file == stretches[i].file && read.first_frame == stretches[i].first_frame &&
+        read.last_frame == stretches[i].last_frame) {
+      places.push_back(i);
+    }
+  }
+  return places;
 }
 
 void Report(const ProgressCallback& progress, std::size_t done, std::size_t total) {
@@ -163,51 +197,73 @@ std::vector<TakeSource> SourcesIn(std::span<const std::filesystem::path> paths,
   return sources;
 }
 
-std::vector<TakeFailure> TakeSource::Visit(const TakeRequest& request, const Visitor& visit) const {
-  if (const auto* files = std::get_if<Files>(&from_)) return VisitFiles(*files, request, visit);
-  return VisitStored(std::get<Stored>(from_), request, visit);
+std::vector<TakeFailure> TakeSource::Visit(
+    const TakeRequest& request, const std::function<void(const TakesAtHand&)>& visit) const {
+  return VisitTogether({&request, 1},
+                       [&](std::size_t, const TakesAtHand& at_hand) { visit(at_hand); });
 }
 
-std::vector<TakeFailure> TakeSource::VisitFiles(const Files& files, const TakeRequest& request,
+std::vector<TakeFailure> TakeSource::VisitTogether(std::span<const TakeRequest> requests,
+                                                   const Visitor& visit) const {
+  if (requests.empty()) return {};
+  if (const auto* files = std::get_if<Files>(&from_)) return VisitFiles(*files, requests, visit);
+  return VisitStored(std::get<Stored>(from_), requests, visit);
+}
+
+std::vector<TakeFailure> TakeSource::VisitFiles(const Files& files,
+                                                std::span<const TakeRequest> requests,
                                                 const Visitor& visit) {
-  const TakeBatch batch =
-      LoadManyTakeFeatures(files.stretches, *request.features, request.rate_hz, files.load,
-                           request.threads, request.progress, {.poses = request.with_poses});
-  TakesAtHand at_hand{.takes = ViewsOf(batch.takes)};
-  for (const TakeView& take : at_hand.takes) at_hand.columns += take.features.column_count();
-  if (!request.keyframes.empty()) {
-    const KeyframeIndex index = IndexTakes(at_hand.takes, *request.features);
-    for (const KeyframeQuery& query : request.keyframes) {
-      at_hand.stretches.push_back(index.Preselect(query.keyframes, query.template_columns));
+  Failures failures;
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    const TakeRequest& request = requests[r];
+    const TakeBatch batch = LoadManyTakeFeatures(
+        files.stretches, *request.features, request.rate_hz, files.load, requests.front().threads,
+        requests.front().progress, {.poses = request.with_poses});
+    TakesAtHand at_hand{.places = PlacesOf(batch, files.stretches), .takes = ViewsOf(batch.takes)};
+    for (const TakeView& take : at_hand.takes) at_hand.columns += take.features.column_count();
+    if (!request.keyframes.empty()) {
+      const KeyframeIndex index = IndexTakes(at_hand.takes, *request.features);
+      at_hand.stretches.reserve(request.keyframes.size());
+      for (const KeyframeQuery& query : request.keyframes) {
+        at_hand.stretches.push_back(index.Preselect(query.keyframes, query.template_columns));
+      }
     }
+    visit(r, at_hand);
+    for (const TakeFailure& failure : batch.failures) failures.Add(failure.path, failure.error);
   }
-  visit(at_hand);
-  return batch.failures;
+  return failures.Take();
 }
 
-std::vector<TakeFailure> TakeSource::VisitStored(const Stored& stored, const TakeRequest& request,
+std::vector<TakeFailure> TakeSource::VisitStored(const Stored& stored,
+                                                 std::span<const TakeRequest> requests,
                                                  const Visitor& visit) {
-  const std::vector<const StoredTake*> chosen = stored.library.TakesWith(
-      *request.features, request.rate_hz, stored.filter, request.with_poses);
+  std::vector<const StoredTake*> chosen;
+  std::vector<StoredReader> readers;
+  readers.reserve(requests.size());
+  for (const TakeRequest& request : requests) {
+    chosen = stored.library.TakesWith(*request.features, request.rate_hz, stored.filter,
+                                      request.with_poses);
+    readers.emplace_back(stored.library, request);
+  }
   const Chosen takes = chosen;
-  const StoredReader reader(stored.library, request);
-  std::vector<TakeFailure> failures;
-  std::size_t first = 0;
+  Failures failures;
   for (std::size_t begin = 0; begin < takes.size();) {
-    const std::size_t end = EndOfGroup(takes, begin, request, stored.memory_bytes);
+    const std::size_t end = EndOfGroup(takes, begin, requests, stored.memory_bytes);
     const Chosen group = takes.subspan(begin, end - begin);
-    std::vector<ReadTake> read(group.size());
-    ParallelFor(group.size(), request.threads,
-                [&](std::size_t i) { read[i] = reader.Read(*group[i]); });
-    TakesAtHand at_hand = Gather(group, read, request.keyframes.size(), failures);
-    at_hand.first = first;
-    first += at_hand.takes.size();
-    visit(at_hand);
+    for (std::size_t r = 0; r < requests.size(); ++r) {
+      Read read(group.size());
+      ParallelFor(group.size(), requests.front().threads,
+                  [&](std::size_t i) { read[i] = readers[r].Read(*group[i]); });
+      visit(r, Gather(group, begin, read, requests[r].keyframes.size()));
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        if (read[i].error) failures.Add(group[i]->path, *read[i].error);
+      }
+    }
     stored.library.ReleaseMemory(group);
     begin = end;
-    Report(request.progress, begin, takes.size());
+    Report(requests.front().progress, begin, takes.size());
   }
-  return failures;
+  return failures.Take();
 }
 
 }  // namespace kinebase

@@ -108,6 +108,40 @@ TEST_F(UseOfALibrary, AnnotatesLikeItsFiles) {
                     recordings_.Clip("squat1Reps", "sb", 2)}));
 }
 
+// Only the squats have the features of both profiles.
+TEST_F(UseOfALibrary, NamesTakesThatLackFeaturesAndGivesWhatTheOthersShow) {
+  const std::string library = Scratch("two.kinebase");
+  const std::string squats = recordings_.folder() / "cut_amc/squat1Reps";
+  ASSERT_EQ(RunKinebase({"import", "--list", recordings_.list(), "--profile", "paper", "--library",
+                         library})
+                .exit_code,
+            0);
+  ASSERT_EQ(RunKinebase({"import", squats, "--library", library}).exit_code, 0);
+  const std::string squat = recordings_.Learn("squat1Reps");  // In profile bonn.
+  const std::string kick = Scratch("kick.template.json");
+  ASSERT_EQ(RunKinebase({"learn", "--list", recordings_.list(), "--class", "kickRFront1Reps",
+                         "--profile", "paper", "-o", kick})
+                .exit_code,
+            0);
+  const auto run = [&](const Arguments& arguments, int exit_code) {
+    return nlohmann::ordered_json::parse(Output(arguments + Arguments{"--tau", "0.1"}, exit_code));
+  };
+  for (const auto& [command, list] :
+       {std::pair(Arguments{"search"}, "hits"),
+        std::pair(Arguments{"annotate", "--overlap", "all", "--no-unknown"}, "segments")}) {
+    SCOPED_TRACE(list);
+    const auto both = run(command + Arguments{squat, kick, "--library", library}, 3);
+    EXPECT_THAT(both["failed"], SizeIs(8));
+    const std::size_t squats_alone =
+        run(command + Arguments{squat, "--in", squats}, 0)[list].size();
+    const std::size_t kicks_alone =
+        run(command + Arguments{kick, "--in", recordings_.folder() / "cut_amc"}, 0)[list].size();
+    EXPECT_GT(squats_alone, 0U);
+    EXPECT_GT(kicks_alone, 0U);
+    EXPECT_EQ(both[list].size(), squats_alone + kicks_alone);
+  }
+}
+
 // Stored poses are rounded, and with them what mt+ templates cost.
 TEST_F(UseOfALibrary, AnnotatesByPosesNearlyLikeItsFiles) {
   const Arguments annotate = Arguments{"annotate"} + ClassTemplates();

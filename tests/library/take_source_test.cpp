@@ -47,14 +47,15 @@ TEST_F(StoredTakes, AreVisitedInOrderAndNoMoreAtATimeThanFit) {
     std::vector<fs::path> visited;
     std::vector<std::size_t> sizes;
     const auto failures = source.Visit({.features = &features_}, [&](const TakesAtHand& at_hand) {
-      EXPECT_EQ(at_hand.first, visited.size());
       sizes.push_back(at_hand.takes.size());
       EXPECT_TRUE(at_hand.takes.size() == 1 || at_hand.columns <= columns);
+      std::size_t i = 0;
       for (const TakeView& take : at_hand.takes) {
         const TakeFeatures& expected = expected_.at(visited.size());
         EXPECT_EQ(take.frame_count, expected.frame_count);
         EXPECT_TRUE(std::ranges::equal(take.features.columns, expected.features.columns));
         EXPECT_EQ(take.name->class_name, "wave");
+        EXPECT_EQ(at_hand.places.at(i++), visited.size());
         visited.push_back(*take.path);
       }
     });
@@ -82,12 +83,12 @@ TEST_F(StoredTakes, ComeWithPosesWhereTheseAreAskedFor) {
 TEST_F(StoredTakes, ThatAreDamagedAreFailuresAmongTheOthers) {
   test::Spoil(takes_.Segment(2), 64 + 2 * 64 + 3);  // The first word of the third take.
   const TakeSource source(takes_.library(), {}, MemoryFor(30));
-  std::size_t visited = 0;
+  std::vector<std::size_t> visited;
   const auto failures = source.Visit({.features = &features_}, [&](const TakesAtHand& at_hand) {
-    EXPECT_EQ(at_hand.first, visited);
-    visited += at_hand.takes.size();
+    EXPECT_EQ(at_hand.places.size(), at_hand.takes.size());
+    visited.insert(visited.end(), at_hand.places.begin(), at_hand.places.end());
   });
-  EXPECT_EQ(visited, 5U);
+  EXPECT_THAT(visited, ElementsAre(0, 1, 3, 4, 5));
   ASSERT_THAT(failures, SizeIs(1));
   EXPECT_EQ(failures.front().path, expected_[2].path);
 }
@@ -114,7 +115,8 @@ TEST_F(StoredTakes, ArePreselectedAsTheFilesAre) {
           std::vector<int> shown(at_hand.takes.size(), 0);
           for (Stretch stretch : at_hand.stretches.front()) {
             shown[static_cast<std::size_t>(stretch.recording)] = 1;
-            stretch.recording += static_cast<int>(at_hand.first);
+            stretch.recording =
+                static_cast<int>(at_hand.places[static_cast<std::size_t>(stretch.recording)]);
             of_library.push_back(stretch);
           }
           for (std::size_t i = 0; i < shown.size(); ++i) {

@@ -40,13 +40,13 @@ struct TakeSegments {
 };
 
 struct AnnotatedTakes {
-  std::vector<TakeSegments> takes;  // Those that could be read, in the order of the source.
-  std::vector<TakeFailure> failures;
+  // Those that could be read for some template, in the order of the source.
+  std::vector<TakeSegments> takes;
+  std::vector<TakeFailure> failures;  // Of all templates: a take may be among both.
 };
 
 // Errors   Those of TakeSource::Visit, FindCandidates and ChooseSegments.
-// Cost     Of FindCandidates. Memory: candidates of the takes at hand, and all segments; with
-//          templates of several feature sets or rates the candidates of all takes.
+// Cost     Of FindCandidates. Memory: candidates of the takes at hand, and all segments.
 // Threads  The result does not depend on the thread count.
 [[nodiscard]] AnnotatedTakes AnnotateTakes(const TakeSource& source,
                                            std::span<const AnnotationQuery> queries,

@@ -43,9 +43,9 @@ struct TakeRequest {
 
 // Some takes of all, in their order.
 struct TakesAtHand {
-  std::size_t first = 0;        // Index of the first among all that could be read.
-  std::int64_t columns = 0;     // Of all of them, whether read or not.
-  std::vector<TakeView> takes;  // Features are empty where only preselected ones are wanted.
+  std::vector<std::size_t> places;  // [take] its index among all of the source, for any request.
+  std::int64_t columns = 0;         // Of all of them, whether read or not.
+  std::vector<TakeView> takes;      // Features are empty where only preselected ones are wanted.
   std::vector<std::vector<Stretch>> stretches;  // [keyframe query]; recordings index `takes`.
 };
 
@@ -60,14 +60,29 @@ class TakeSource {
   TakeSource(const std::filesystem::path& library, TakeFilter filter,
              std::int64_t memory_bytes = kDefaultMemoryBytes);
 
+  // Whether all takes are one group, as those of files are.
+  [[nodiscard]] bool comes_at_once() const { return std::holds_alternative<Files>(from_); }
+
   // Calls `visit` with all takes, one group after another; what it is given is valid until it
   // returns. Files are read at once, and are one group.
   //
   // Returns  The takes that could not be read, in their order.
-  // Errors   NotFound as TakeLibrary::Load, before anything is visited; Preselect's; Cancelled.
+  // Errors   NotFound as TakeLibrary::TakesWith, before anything is visited; Preselect's;
+  //          Cancelled.
   // Cost     Of reading; for a library that of comparing checksums, at the speed of memory.
   std::vector<TakeFailure> Visit(const TakeRequest& request,
                                  const std::function<void(const TakesAtHand&)>& visit) const;
+
+  // The same for several requests: each group of takes is visited once for each of them, in their
+  // order, before the next group. So all that is asked of a take comes together, and a take that
+  // cannot be read for one request is still visited for the others.
+  //
+  // requests  Threads and progress are those of the first.
+  // visit     Hears which request it is.
+  // Returns   Of all requests; a take that fails several in the same words comes once.
+  std::vector<TakeFailure> VisitTogether(
+      std::span<const TakeRequest> requests,
+      const std::function<void(std::size_t, const TakesAtHand&)>& visit) const;
 
  private:
   struct Files {
@@ -79,10 +94,13 @@ class TakeSource {
     TakeFilter filter;
     std::int64_t memory_bytes;
   };
-  static std::vector<TakeFailure> VisitFiles(const Files& files, const TakeRequest& request,
-                                             const std::function<void(const TakesAtHand&)>& visit);
-  static std::vector<TakeFailure> VisitStored(const Stored& stored, const TakeRequest& request,
-                                              const std::function<void(const TakesAtHand&)>& visit);
+  using Visitor = std::function<void(std::size_t, const TakesAtHand&)>;
+  static std::vector<TakeFailure> VisitFiles(const Files& files,
+                                             std::span<const TakeRequest> requests,
+                                             const Visitor& visit);
+  static std::vector<TakeFailure> VisitStored(const Stored& stored,
+                                              std::span<const TakeRequest> requests,
+                                              const Visitor& visit);
 
   std::variant<Files, Stored> from_;
 };
