@@ -335,7 +335,7 @@ std::vector<const StoredTake*> TakeLibrary::TakesWith(const FeatureSet& features
     throw Error(ErrorCode::kNotFound, "holds no takes; kinebase import adds some",
                 {.file = folder_});
   }
-  const std::vector<const StoredTake*> chosen = Choose(filter);
+  std::vector<const StoredTake*> chosen = Choose(filter);
   if (chosen.empty()) {
     throw Error(ErrorCode::kNotFound, "has no take that is all that is asked for",
                 {.file = folder_});

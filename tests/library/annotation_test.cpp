@@ -198,6 +198,7 @@ TEST(ThresholdFromBackground, IsAShareOfTheSecondBestRecording) {
                                            test::OneFeatureTake(20, {}),
                                            test::OneFeatureTake(2, {})};
   std::vector<RecordingStreams> background;
+  background.reserve(takes.size());
   for (const TakeFeatures& take : takes) background.push_back({.features = take.features});
   // The first recording is a perfect match, the second 0 throughout, the third too short.
   const DeltaCurve curve =

@@ -114,7 +114,7 @@ TEST(SegmentFile, IsLaidOutAsDocumented) {
   EXPECT_EQ(bytes.substr(lists + 16, expected.size()), expected);
   std::size_t list_bytes = 0;
   for (const SegmentTake& take : takes) list_bytes += 16 + FormatRunLists(take.features).size();
-  EXPECT_LE(bytes.size(), 64 + 3 * 64 + 22 * 8 + 2 * 32 + 5 * 144 + list_bytes + 8 * 64);
+  EXPECT_LE(bytes.size(), list_bytes + 64U + 3U * 64U + 22U * 8U + 2U * 32U + 5U * 144U + 8U * 64U);
 }
 
 TEST(SegmentFile, FindsEveryChangedByteOfHeaderTableAndBlocks) {
