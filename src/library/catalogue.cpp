@@ -195,11 +195,9 @@ Catalogue::Catalogue(const fs::path& library, SqliteDatabase::Access access)
 
 void Catalogue::Upgrade() {
   SqliteTransaction transaction(database_, SqliteTransaction::Kind::kWrite);
-  const std::int64_t before = version_;
+  const std::vector<StoredTake> takes = Takes();  // Before their checksums are asked for.
   while (version_ < kCatalogueVersion) MakeVersion(database_, ++version_);
-  if (before == 1) {
-    for (const StoredTake& take : Takes()) PutTake(take);
-  }
+  for (const StoredTake& take : takes) PutTake(take);
   transaction.Commit();
 }
 
@@ -407,6 +405,7 @@ std::string Catalogue::Check() const {
   SqliteStatement check(database_, "PRAGMA integrity_check(1)");
   std::string found = check.Step() ? check.Text(0) : "nothing can be read";
   if (found != "ok") return found;
+  if (version_ == 0) return {};
   std::set<std::uint64_t> sets;
   SqliteStatement rows(database_, "SELECT hash FROM feature_sets");
   while (rows.Step()) sets.insert(static_cast<std::uint64_t>(rows.Integer(0)));
