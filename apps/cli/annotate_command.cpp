@@ -16,9 +16,9 @@
 #include "fmt/format.h"
 #include "fmt/ranges.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/library_templates.h"
 #include "kinebase/library/take_annotation.h"
 #include "kinebase/templates/calibration.h"
-#include "kinebase/templates/template_file.h"
 
 namespace kinebase::cli {
 namespace {
@@ -109,7 +109,7 @@ void SetThreshold(Query& query, double tau) {
 }
 
 Query LoadQuery(const fs::path& file, std::string class_name, const AnnotateOptions& options) {
-  Query query{.motion_template = ReadTemplate(file)};
+  Query query{.motion_template = ReadOrLoadTemplate(file, options.source.library)};
   query.features = FeatureSetOfTemplate(file, query.motion_template, options.feature_set);
   query.class_name = class_name.empty() ? query.motion_template.name : std::move(class_name);
   if (query.class_name == kUnknownClass) {
@@ -425,7 +425,8 @@ int Run(const AnnotateOptions& options) {
 
 void AddWhatToFind(CLI::App& command, AnnotateOptions& options) {
   command.add_option("TEMPLATE", options.templates,
-                     "Template files, from learn; those of one name are one class");
+                     "Template files, from learn, or names of those in the library; those of one "
+                     "name are one class");
   command.add_option("--class", options.classes, "A template of a class of this name")
       ->type_name("NAME=FILE");
   AddSourceOptions(command, options.source, "annotate");

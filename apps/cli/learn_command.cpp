@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/feature_options.h"
+#include "cli/take_filter.h"
 #include "cli/update_template.h"
 #include "fmt/format.h"
 #include "kinebase/library/class_learning.h"
@@ -32,7 +33,8 @@ struct LearnCommandOptions {
   std::filesystem::path output;
   std::filesystem::path list;
   std::string class_name;
-  std::vector<std::string> actors;
+  std::string label;  // Of a library's stretches, instead of a class.
+  TakeFilter filter;  // Of a list its actors alone.
   std::vector<std::filesystem::path> folders;
   std::filesystem::path library;  // Instead of clips and lists.
   std::uint64_t memory_bytes = kDefaultMemoryBytes;
@@ -56,6 +58,14 @@ struct LearnCommandOptions {
   }
 };
 
+std::string TemplateName(const LearnCommandOptions& options) {
+  if (!options.name.empty()) return options.name;
+  if (!options.class_name.empty()) return options.class_name;
+  if (!options.label.empty()) return options.label;
+  const std::string file = options.output.filename().string();
+  return file.substr(0, file.find('.'));
+}
+
 // Learning needs to know from what, and where to put the result.
 void CheckUsage(const LearnCommandOptions& options) {
   if (!options.update.empty()) {
@@ -66,7 +76,7 @@ void CheckUsage(const LearnCommandOptions& options) {
   }
   const bool is_labelled = !options.list.empty() || !options.library.empty();
   if (!is_labelled &&
-      (!options.class_name.empty() || options.all_classes || !options.actors.empty())) {
+      (!options.class_name.empty() || options.all_classes || !options.filter.actors.empty())) {
     throw UsageError("--class, --all-classes and --actors choose from a --list or a --library");
   }
   if (!options.folders.empty() && options.list.empty()) {
@@ -76,9 +86,10 @@ void CheckUsage(const LearnCommandOptions& options) {
     throw UsageError(
         "learn needs clips, or a list of clips, or a library: --list clips.csv --class NAME");
   }
-  if (is_labelled && options.class_name.empty() != options.all_classes) {
-    throw UsageError(fmt::format("{} needs either --class NAME or --all-classes",
-                                 options.library.empty() ? "--list" : "--library"));
+  if (is_labelled && options.label.empty() && options.class_name.empty() != options.all_classes) {
+    throw UsageError(fmt::format("{} needs either --class NAME or --all-classes{}",
+                                 options.library.empty() ? "--list" : "--library",
+                                 options.library.empty() ? "" : ", or --label WORD"));
   }
   if (options.styles && options.Method() == "mt") {
     throw UsageError("--styles is for --method mt+");
@@ -91,7 +102,8 @@ void CheckUsage(const LearnCommandOptions& options) {
   if (options.Method() == "mt" && !options.background.empty()) {
     throw UsageError("--background is for --method mt+");
   }
-  if (options.Method() == "mt+" && !is_labelled && options.background.empty()) {
+  const bool has_other_classes = is_labelled && options.label.empty();
+  if (options.Method() == "mt+" && !has_other_classes && options.background.empty()) {
     throw UsageError(
         "--method mt+ needs other motion to set the class off from: --background PATH, or the "
         "other classes of a --list or a --library");
@@ -99,14 +111,14 @@ void CheckUsage(const LearnCommandOptions& options) {
   if (!options.clips.empty() && is_labelled) {
     throw UsageError("learn takes clips, or --list, or --library; one of them");
   }
-  if (options.output.empty() && options.name.empty() && options.class_name.empty()) {
+  if (options.output.empty() && TemplateName(options).empty()) {
     throw UsageError("learn needs --name NAME or -o FILE");
   }
 }
 
 std::vector<TakeStretch> ChosenClips(const LearnCommandOptions& options) {
   if (!options.list.empty()) {
-    return ClipsOfClass(options.list, options.class_name, options.actors, options.folders);
+    return ClipsOfClass(options.list, options.class_name, options.filter.actors, options.folders);
   }
   std::vector<TakeStretch> stretches;
   for (const auto& clip : options.clips) {
@@ -120,13 +132,6 @@ std::vector<TakeStretch> ChosenClips(const LearnCommandOptions& options) {
     }
   }
   return stretches;
-}
-
-std::string TemplateName(const LearnCommandOptions& options) {
-  if (!options.name.empty()) return options.name;
-  if (!options.class_name.empty()) return options.class_name;
-  const std::string file = options.output.filename().string();
-  return file.substr(0, file.find('.'));
 }
 
 // A name that a file may have.
@@ -163,7 +168,18 @@ MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet
 
 // The takes of the class that is asked for, in the library.
 TakeFilter ChosenTakes(const LearnCommandOptions& options) {
-  return {.actors = options.actors, .classes = {options.class_name}};
+  TakeFilter filter = options.filter;
+  filter.classes = {options.class_name};
+  return filter;
+}
+
+// Those, and of the classes that it is set off from.
+TakeFilter TakesOfAllClasses(const LearnCommandOptions& options) {
+  TakeFilter filter = options.filter;
+  if (!filter.classes.empty() && !options.class_name.empty()) {
+    filter.classes.push_back(options.class_name);
+  }
+  return filter;
 }
 
 ExampleRequest RequestOf(const LearnCommandOptions& options, const FeatureSet& features) {
@@ -179,8 +195,8 @@ std::vector<ListedClip> ListedClips(const LearnCommandOptions& options) {
   if (!options.class_name.empty()) (void)ChosenClips(options);
   std::vector<ListedClip> clips = ReadClipList(options.list, options.folders);
   std::erase_if(clips, [&](const ListedClip& clip) {
-    return !options.actors.empty() &&
-           std::ranges::find(options.actors, clip.actor) == options.actors.end();
+    return !options.filter.actors.empty() &&
+           std::ranges::find(options.filter.actors, clip.actor) == options.filter.actors.end();
   });
   return clips;
 }
@@ -261,8 +277,11 @@ Examples LoadExamples(const LearnCommandOptions& options, const FeatureSet& feat
     if (!options.class_name.empty()) {  // Says what is wrong with it.
       (void)library.TakesWith(features, options.features.rate_hz, ChosenTakes(options), true);
     }
+    const ExampleRequest request = RequestOf(options, features);
     examples.labelled =
-        LoadLabelledTakes(library, {.actors = options.actors}, RequestOf(options, features));
+        options.label.empty()
+            ? LoadLabelledTakes(library, TakesOfAllClasses(options), request)
+            : LoadLabelledStretches(library, options.label, options.filter, request);
   } else if (options.list.empty()) {
     TakeBatch clips = load(ChosenClips(options));
     for (TakeFeatures& take : clips.takes) {
@@ -373,6 +392,7 @@ int RunWithContrast(LearnCommandOptions& options) {
   }
   if (examples.labelled.clips.empty()) return kCouldNot;
   const auto outputs = Outputs(options, LearnTogether(options, features, examples));
+  if (outputs.empty()) return kCouldNot;  // No take of the class could be read.
   for (const auto& [learned, file] : outputs) CheckWritable(file, options.common.overwrite());
   Json list = Json::array();
   for (const auto& [learned, file] : outputs) {
@@ -397,8 +417,11 @@ TakeBatch LoadClips(const LearnCommandOptions& options, const FeatureSet& featur
   }
   ExampleRequest request = RequestOf(options, features);
   request.with_poses = false;
+  const TakeLibrary library(options.library);
   LabelledBatch labelled =
-      LoadLabelledTakes(TakeLibrary(options.library), ChosenTakes(options), request);
+      options.label.empty()
+          ? LoadLabelledTakes(library, ChosenTakes(options), request)
+          : LoadLabelledStretches(library, options.label, options.filter, request);
   TakeBatch batch{.takes = {}, .failures = std::move(labelled.failures)};
   batch.takes.reserve(labelled.clips.size());
   for (LabelledClip& clip : labelled.clips) batch.takes.push_back(std::move(clip.take));
@@ -489,14 +512,22 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
   class_name->excludes(command->add_flag(
       "--all-classes", options->all_classes,
       "A template for each class of the list or library, into the folder -o (method mt+)"));
-  command->add_option("--actors", options->actors, "Only clips of these actors: a,b")
-      ->delimiter(',')
-      ->type_name("NAMES");
+  auto* library =
+      command
+          ->add_option("--library", options->library,
+                       "Takes of a library instead, from kinebase import, by their classes")
+          ->excludes(list)
+          ->type_name("FOLDER");
+  for (CLI::Option* filter : AddTakeFilterOptions(*command, options->filter)) {
+    if (filter != command->get_option("--actors")) filter->needs(library);  // Lists have these.
+  }
   command
-      ->add_option("--library", options->library,
-                   "Takes of a library instead, from kinebase import, by their classes")
-      ->excludes(list)
-      ->type_name("FOLDER");
+      ->add_option("--label", options->label,
+                   "Stretches of the library's takes that have this label, instead of a class")
+      ->needs(library)
+      ->excludes(class_name)
+      ->excludes(command->get_option("--all-classes"))
+      ->type_name("WORD");
   AddMemoryOption(*command, options->memory_bytes);
   command
       ->add_option("--in", options->folders,
@@ -544,6 +575,7 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
       "classes\n"
       "  kinebase learn --library motion.kinebase --class squat1Reps --background "
       "motion.kinebase\n"
+      "  kinebase learn --library motion.kinebase --label squat -o squat.template.json\n"
       "  kinebase learn --update squat.template.json --marks hits.csv -o better.template.json");
   command->callback([options, &exit_code] { exit_code = Run(*options); });
 }

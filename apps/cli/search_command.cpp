@@ -1,6 +1,7 @@
 // kinebase search: every place where a motion class happens.
 
 #include <memory>
+#include <optional>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -83,8 +84,9 @@ using Query = SearchQuery;
 
 // Those of another template file, made for the same template.
 std::vector<Keyframe> KeyframesOfFile(const std::filesystem::path& path,
+                                      const std::filesystem::path& library,
                                       const MotionTemplate& motion_template) {
-  const MotionTemplate source = ReadTemplate(path);
+  const MotionTemplate source = ReadOrLoadTemplate(path, library);
   if (source.keyframes.empty()) {
     throw Error(ErrorCode::kNotFound, "holds no keyframes; kinebase template keyframes makes some",
                 {path});
@@ -106,7 +108,7 @@ void SetKeyframes(Query& query, const SearchCommandOptions& options) {
   if (options.keyframes == "none") {
     keyframes.clear();
   } else if (options.keyframes != "auto") {
-    keyframes = KeyframesOfFile(options.keyframes, query.motion_template);
+    keyframes = KeyframesOfFile(options.keyframes, options.source.library, query.motion_template);
   } else if (keyframes.empty()) {
     keyframes = ChooseKeyframes(query.motion_template, query.features);
     if (!keyframes.empty()) return;
@@ -223,12 +225,13 @@ int Run(const SearchCommandOptions& options) {
   if (!options.labels.empty()) labels = ReadSegmentLabels(options.labels);
   const TakeSource source = SourceOf(options.source, options.common.load);
 
-  CurveFile curves(options.curve, queries.size());
+  std::optional<CurveFile> curves;
   SourceSearchOptions search = SearchOptionsOf(options);
   if (!options.curve.empty()) {
+    curves.emplace(options.curve, queries.size(), options.common.overwrite());
     search.on_takes = [&](std::size_t i, std::span<const TakeView> takes) {
       const MotionTemplate& motion_template = queries[i].motion_template;
-      curves.Add(motion_template, ThresholdOf(motion_template, options), i, takes);
+      curves->Add(motion_template, ThresholdOf(motion_template, options), i, takes);
     };
   }
   const SourceHits found = SearchSource(source, queries, search);
@@ -237,9 +240,9 @@ int Run(const SearchCommandOptions& options) {
   for (const auto& [file, diagnostics] : found.diagnostics) {
     PrintDiagnostics(options.common, file, diagnostics);
   }
-  if (!options.labels.empty()) CheckLabels(labels, curves.files(), options.labels);
+  if (curves && !options.labels.empty()) CheckLabels(labels, curves->files(), options.labels);
   const std::vector<NamedHit> hits = WithNames(found, queries);
-  if (!options.curve.empty()) curves.Write(hits, labels, options.common.overwrite());
+  if (curves) curves->Write(hits, labels);
   Show(found, hits, watch.seconds(), options);
   return found.failures.empty() ? kDone : kPartFailed;
 }
@@ -273,7 +276,10 @@ void AddSearchCommand(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<SearchCommandOptions>();
   CLI::App* command =
       program.add_subcommand("search", "Find every place where a motion class happens");
-  command->add_option("TEMPLATE", options->templates, "Template files, from learn")->required();
+  command
+      ->add_option("TEMPLATE", options->templates,
+                   "Template files, from learn, or names of those in the library")
+      ->required();
   auto* library = AddSourceOptions(*command, options->source, "search");
   command->get_option("--memory")->needs(library);
   command

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTableHead = "file,column,frame,delta,start_frame\n";
+constexpr std::size_t kBytesAtATime = std::size_t{1} << 16;
 
 // A row for each label, in the order in which they first come.
 std::vector<TimelineRow> LabelRows(std::span<const SegmentLabel> labels, const fs::path& file,
@@ -31,29 +32,18 @@ std::vector<TimelineRow> LabelRows(std::span<const SegmentLabel> labels, const f
   return rows;
 }
 
-std::string CurveTable(const QuantizedTemplate& quantized, const TakeView& take) {
-  std::string text;
-  const DeltaCurve curve = ComputeDelta(quantized, take.features.columns);
-  const std::string file = CsvField(take.path->string());
-  const auto first_frame_of = [&](int column) {
-    return FramesOfColumns(column, column, take.features.rate_hz, take.rate_hz, take.frame_count)
-               .first +
-           1;
-  };
-  for (int column = 0; column < take.features.column_count(); ++column) {
-    const auto i = static_cast<std::size_t>(column);
-    text += fmt::format(
-        "{},{},{},{},{}\n", file, column, first_frame_of(column), ToShortestText(curve.delta[i]),
-        curve.start[i] < 0 ? std::string() : std::to_string(first_frame_of(curve.start[i])));
-  }
-  return text;
-}
-
 }  // namespace
 
 bool IsPicture(const fs::path& path) {
   const std::string extension = ToLower(path.extension().string());
   return extension == ".svg" || extension == ".png";
+}
+
+CurveFile::CurveFile(fs::path path, std::size_t templates, Overwrite overwrite)
+    : path_(std::move(path)), templates_(templates), overwrite_(overwrite) {
+  if (IsPicture(path_)) return;
+  table_.emplace(path_, overwrite);
+  table_->Append(kTableHead);
 }
 
 DeltaPanel& CurveFile::PanelOf(const TakeView& take) {
@@ -68,11 +58,32 @@ DeltaPanel& CurveFile::PanelOf(const TakeView& take) {
   return panel;
 }
 
+void CurveFile::AddTable(const QuantizedTemplate& quantized, const TakeView& take) {
+  const DeltaCurve curve = ComputeDelta(quantized, take.features.columns);
+  const std::string file = CsvField(take.path->string());
+  const auto first_frame_of = [&](int column) {
+    return FramesOfColumns(column, column, take.features.rate_hz, take.rate_hz, take.frame_count)
+               .first +
+           1;
+  };
+  std::string text;
+  for (int column = 0; column < take.features.column_count(); ++column) {
+    const auto i = static_cast<std::size_t>(column);
+    text += fmt::format(
+        "{},{},{},{},{}\n", file, column, first_frame_of(column), ToShortestText(curve.delta[i]),
+        curve.start[i] < 0 ? std::string() : std::to_string(first_frame_of(curve.start[i])));
+    if (text.size() < kBytesAtATime) continue;
+    table_->Append(text);
+    text.clear();
+  }
+  table_->Append(text);
+}
+
 void CurveFile::Add(const MotionTemplate& motion_template, double tau, std::size_t which,
                     std::span<const TakeView> takes) {
-  if (!IsPicture(path_)) {
+  if (table_) {
     const QuantizedTemplate quantized = Quantize(motion_template);
-    for (const TakeView& take : takes) table_ += CurveTable(quantized, take);
+    for (const TakeView& take : takes) AddTable(quantized, take);
     return;
   }
   for (const TakeView& take : takes) {
@@ -84,10 +95,9 @@ void CurveFile::Add(const MotionTemplate& motion_template, double tau, std::size
   }
 }
 
-void CurveFile::Write(const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels,
-                      Overwrite overwrite) {
-  if (!IsPicture(path_)) {
-    WriteFile(path_, std::string(kTableHead) + table_, overwrite);
+void CurveFile::Write(const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels) {
+  if (table_) {
+    table_->Publish();
     return;
   }
   for (const NamedHit& named : hits) {
@@ -97,7 +107,7 @@ void CurveFile::Write(const std::vector<NamedHit>& hits, std::span<const Segment
   for (std::size_t i = 0; i < panels_.size(); ++i) {
     panels_[i].labels = LabelRows(labels, files_[i], panels_[i].frame_rate_hz);
   }
-  DrawDeltaCurves(panels_, path_, overwrite);
+  DrawDeltaCurves(panels_, path_, overwrite_);
 }
 
 void CheckLabels(std::span<const SegmentLabel> labels, std::span<const fs::path> recordings,

@@ -4,12 +4,13 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cli/search_output.h"
-#include "kinebase/core/output_file.h"
+#include "kinebase/core/file_stream.h"
 #include "kinebase/library/annotation_file.h"
 #include "kinebase/library/take_search.h"
 #include "kinebase/pictures/delta_picture.h"
@@ -19,11 +20,12 @@ namespace kinebase::cli {
 // By its extension; everything else is a table.
 [[nodiscard]] bool IsPicture(const std::filesystem::path& path);
 
-// Takes the curves of takes while these are at hand, and writes all of them in the end.
+// Takes the curves of takes while these are at hand. A table is written as they come, a picture in
+// the end; neither is there before.
 class CurveFile {
  public:
-  CurveFile(std::filesystem::path path, std::size_t templates)
-      : path_(std::move(path)), templates_(templates) {}
+  // Errors  Those of FileStream.
+  CurveFile(std::filesystem::path path, std::size_t templates, Overwrite overwrite);
 
   // tau    Of the template's hits.
   // which  Its index among all; a table has one.
@@ -34,16 +36,18 @@ class CurveFile {
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
 
   // labels  May be empty; those of other recordings are passed over.
-  // Errors  Those of DrawDeltaCurves.
-  void Write(const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels,
-             Overwrite overwrite);
+  // Errors  Those of DrawDeltaCurves and FileStream.
+  void Write(const std::vector<NamedHit>& hits, std::span<const SegmentLabel> labels);
 
  private:
   DeltaPanel& PanelOf(const TakeView& take);
 
+  void AddTable(const QuantizedTemplate& quantized, const TakeView& take);
+
   std::filesystem::path path_;
   std::size_t templates_;
-  std::string table_;
+  Overwrite overwrite_;
+  std::optional<FileStream> table_;
   std::vector<DeltaPanel> panels_;                   // A take each,
   std::vector<std::filesystem::path> files_;         // its file,
   std::map<std::filesystem::path, std::size_t> of_;  // and where it is among them.

@@ -10,8 +10,10 @@
 #include <deque>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "kinebase/core/error.h"
+#include "kinebase/core/file_stream.h"
 
 namespace kinebase {
 namespace {
@@ -34,24 +36,6 @@ std::filesystem::path TemporaryName(const std::filesystem::path& path) {
          (".kinebase-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
 }
 
-// Writes and flushes; 0 or the system's error number.
-int WriteDurably(const std::filesystem::path& path, std::string_view contents) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) return errno;
-  int error = 0;
-  while (!contents.empty() && error == 0) {
-    const ssize_t written = ::write(file, contents.data(), contents.size());
-    if (written >= 0) {
-      contents.remove_prefix(static_cast<std::size_t>(written));
-    } else if (errno != EINTR) {
-      error = errno;
-    }
-  }
-  if (error == 0 && ::fsync(file) != 0) error = errno;
-  if (::close(file) != 0 && error == 0) error = errno;
-  return error;
-}
-
 // Gives the finished file its name. Without overwriting, link() refuses atomically where the name
 // is taken, which rename() would not.
 int GiveName(const std::filesystem::path& temporary, const std::filesystem::path& path,
@@ -70,10 +54,14 @@ int GiveName(const std::filesystem::path& temporary, const std::filesystem::path
   return ::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
 }
 
+}  // namespace
+
+namespace internal {
+
 // A file that is written and has not got its name yet.
 class PendingFile {
  public:
-  PendingFile(const std::filesystem::path& named_path, std::string_view contents) {
+  explicit PendingFile(const std::filesystem::path& named_path) {
     // A link stays, and what it points to is written.
     std::error_code not_there;
     const std::filesystem::path target = std::filesystem::canonical(named_path, not_there);
@@ -83,26 +71,44 @@ class PendingFile {
       std::filesystem::create_directories(path_.parent_path(), error);
       if (error) ThrowIoFailure(path_.parent_path(), error.value());
     }
-    int error = 0;
     do {  // A process that crashed under the same number may have left one behind.
       temporary_ = TemporaryName(path_);
-      error = WriteDurably(temporary_, contents);
-    } while (error == EEXIST);
-    if (error == 0) return;
-    ::unlink(temporary_.c_str());
-    ThrowIoFailure(path_, error);
+      file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (file_ < 0 && errno == EEXIST);
+    if (file_ >= 0) return;
+    ThrowIoFailure(path_, errno);
   }
   ~PendingFile() {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    if (file_ >= 0) ::close(file_);
+    if (!is_published_) ::unlink(temporary_.c_str());
   }
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
+  void Append(std::string_view contents) const {
+    while (!contents.empty()) {
+      const ssize_t written = ::write(file_, contents.data(), contents.size());
+      if (written >= 0) {
+        contents.remove_prefix(static_cast<std::size_t>(written));
+      } else if (errno != EINTR) {
+        ThrowIoFailure(path_, errno);
+      }
+    }
+  }
+
+  // Everything that was appended is on the disk.
+  void Flush() {
+    int error = ::fsync(file_) == 0 ? 0 : errno;
+    if (::close(std::exchange(file_, -1)) != 0 && error == 0) error = errno;
+    if (error != 0) ThrowIoFailure(path_, error);
+  }
+
+  // Flushed before.
   void Publish(Overwrite overwrite) {
     const int error = GiveName(temporary_, path_, overwrite);
     if (error == EEXIST) ThrowAlreadyExists(path_);
     if (error != 0) ThrowIoFailure(path_, error);
-    temporary_.clear();
+    is_published_ = true;
   }
 
   // What was not there before Publish() is gone again.
@@ -111,9 +117,13 @@ class PendingFile {
  private:
   std::filesystem::path path_;
   std::filesystem::path temporary_;
+  int file_ = -1;
+  bool is_published_ = false;
 };
 
-}  // namespace
+}  // namespace internal
+
+using internal::PendingFile;
 
 void CheckWritable(const std::filesystem::path& path, Overwrite overwrite) {
   std::error_code ignored;
@@ -136,7 +146,11 @@ void WriteFile(const std::filesystem::path& path, std::string_view contents, Ove
 void WriteFiles(std::span<const FileContents> files, Overwrite overwrite) {
   for (const FileContents& file : files) CheckWritable(file.path, overwrite);
   std::deque<PendingFile> pending;
-  for (const FileContents& file : files) pending.emplace_back(file.path, file.contents);
+  for (const FileContents& file : files) {
+    pending.emplace_back(file.path);
+    pending.back().Append(file.contents);
+    pending.back().Flush();
+  }
   for (auto file = pending.begin(); file != pending.end(); ++file) {
     try {
       file->Publish(overwrite);
@@ -147,6 +161,21 @@ void WriteFiles(std::span<const FileContents> files, Overwrite overwrite) {
       throw;
     }
   }
+}
+
+FileStream::FileStream(const std::filesystem::path& path, Overwrite overwrite)
+    : overwrite_(overwrite) {
+  CheckWritable(path, overwrite);
+  file_ = std::make_unique<PendingFile>(path);
+}
+
+FileStream::~FileStream() = default;
+
+void FileStream::Append(std::string_view contents) { file_->Append(contents); }
+
+void FileStream::Publish() {
+  file_->Flush();
+  file_->Publish(overwrite_);
 }
 
 }  // namespace kinebase

@@ -80,7 +80,9 @@ MotionTemplate LoadTemplate(const fs::path& library, const std::string& name) {
 
 MotionTemplate ReadOrLoadTemplate(const fs::path& file_or_name, const fs::path& library) {
   std::error_code unreachable;
-  const bool is_file = fs::exists(file_or_name, unreachable);
+  // A folder is no template, whatever its name: it may be called after a class.
+  const bool is_file =
+      fs::exists(file_or_name, unreachable) && !fs::is_directory(file_or_name, unreachable);
   if (is_file || library.empty() || ListTemplates(library).empty()) {
     return ReadTemplate(file_or_name);
   }

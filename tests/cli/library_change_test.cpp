@@ -136,6 +136,21 @@ TEST_F(ChangedLibrary, KeepsTemplates) {
         .Json()["hits"];
   };
   EXPECT_EQ(hits(name), hits(file));
+  const auto segments = [&](const std::vector<std::string>& what) {
+    std::vector<std::string> arguments = {"annotate", "--library", library(), "--json", "--quiet"};
+    arguments.insert(arguments.end(), what.begin(), what.end());
+    return RunKinebase(arguments).Json()["segments"];
+  };
+  EXPECT_THAT(segments({file}), ::testing::Not(::testing::IsEmpty()));
+  EXPECT_EQ(segments({name}), segments({file}));
+  EXPECT_EQ(segments({"--class", "down=" + name}), segments({"--class", "down=" + file}));
+  // Not a folder, as takes of a class lie in one.
+  const fs::path folder = recordings_.scratch() / "here";
+  fs::create_directories(folder / name);
+  EXPECT_EQ(
+      RunKinebase({"search", name, "--library", library(), "--json", "--quiet"}, {.folder = folder})
+          .Json()["hits"],
+      hits(file));
   ExpectOneError(RunKinebase({"search", "squad", "--library", library()}), 1,
                  {"no template 'squad'", name});
   EXPECT_THAT(Run("templates", {"--remove", name}).out, HasSubstr("1 template removed"));

@@ -189,6 +189,33 @@ TEST_F(UseOfALibrary, LearnsWhatSetsClassesOffNearlyLikeFromItsFiles) {
   }
 }
 
+TEST_F(UseOfALibrary, LearnsFromChosenTakesAndFromStretchesWithALabel) {
+  const auto learn = [&](const Arguments& options, const std::string& name) {
+    const ProgramResult result = RunKinebase(Arguments{"learn", "--library", library_} + options +
+                                             Arguments{"-o", Scratch(name), "--force", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.Json()["clips"];
+  };
+  const auto label = [&](const Arguments& options) {
+    const ProgramResult result = RunKinebase(Arguments{"library", "label", library_} + options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  const std::string squat = recordings_.Clip("squat1Reps", "sb", 1);
+  label({squat, "--add", "good"});
+  EXPECT_EQ(learn({"--class", "squat1Reps", "--labelled", "good"}, "a"), 1);
+  EXPECT_EQ(learn({"--class", "squat1Reps", "--text", "squat sb"}, "b"), 2);
+  EXPECT_EQ(learn({"--label", "good"}, "c"), 1);
+  // The label's name aside, learning from the labelled take is learning from its file.
+  EXPECT_EQ(learn({"--label", "good", "--name", "squat"}, "d"), 1);
+  ASSERT_EQ(RunKinebase({"learn", squat, "--name", "squat", "-o", Scratch("e")}).exit_code, 0);
+  EXPECT_EQ(ReadText(Scratch("d")), ReadText(Scratch("e")));
+  ExpectOneError(RunKinebase({"learn", squat, "--label", "good", "-o", Scratch("f")}), 2,
+                 {"--library"});
+  ExpectOneError(
+      RunKinebase({"learn", "--library", library_, "--label", "bad", "-o", Scratch("f")}), 1,
+      {"'bad'", "good"});
+}
+
 TEST_F(UseOfALibrary, SaysWhatIsWrongWithItsUse) {
   const std::string squat = recordings_.Learn("squat1Reps");
   ExpectOneError(RunKinebase({"annotate", squat}), 2, {"--in is required, or --library"});

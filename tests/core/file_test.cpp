@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kinebase/core/error.h"
+#include "kinebase/core/file_stream.h"
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/output_file.h"
 #include "support/files.h"
@@ -265,6 +266,42 @@ TEST(WriteFile, IsNeverSeenHalfWritten) {
     ASSERT_EQ(file.text().size(), 200'000);
     ASSERT_EQ(file.text().find_first_not_of(file.text().front()), std::string_view::npos);
   }
+}
+
+TEST(FileStream, HasItsNameOnceItIsWhole) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "new" / "f";
+  {
+    FileStream stream(file, Overwrite::kNo);
+    stream.Append("one,");
+    stream.Append("");
+    stream.Append("two");
+    EXPECT_FALSE(fs::exists(file));
+    stream.Publish();
+  }
+  EXPECT_EQ(test::ReadText(file), "one,two");
+  EXPECT_THAT(NamesIn(file.parent_path()), ElementsAre("f"));
+}
+
+TEST(FileStream, LeavesNothingWhereItIsGivenUp) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "f";
+  test::WriteText(file, "old");
+  EXPECT_EQ(test::ErrorOf([&] { FileStream(file, Overwrite::kNo).Append("new"); }).code(),
+            ErrorCode::kAlreadyExists);
+  FileStream(file, Overwrite::kYes).Append("new");
+  EXPECT_EQ(test::ReadText(file), "old");
+  EXPECT_THAT(NamesIn(folder.path()), ElementsAre("f"));
+}
+
+TEST(FileStream, RefusesANameThatSomebodyElseHasTakenMeanwhile) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "f";
+  FileStream stream(file, Overwrite::kNo);
+  stream.Append("new");
+  test::WriteText(file, "theirs");
+  EXPECT_EQ(test::ErrorOf([&] { stream.Publish(); }).code(), ErrorCode::kAlreadyExists);
+  EXPECT_EQ(test::ReadText(file), "theirs");
 }
 
 TEST(CheckWritable, AsksBeforeLongWorkBegins) {

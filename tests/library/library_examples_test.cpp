@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "kinebase/library/library_labels.h"
 #include "library/made_up_takes.h"
 
 namespace kinebase {
@@ -48,6 +49,36 @@ TEST_F(LibraryExamples, ThatNeedMoreMemoryAreRefusedWithTheOption) {
   const Error error = ErrorOf([&] { (void)LoadLabelledTakes(library, {}, Request(1000)); });
   EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
   EXPECT_THAT(error.what(), HasSubstr("raise --memory"));
+}
+
+TEST_F(LibraryExamples, AreStretchesWithALabel) {
+  const fs::path file = fs::canonical(takes_.files()[5]);
+  ChangeLabels(takes_.library(), {.names = {file}},
+               {.add = {"jump"}, .first_frame = 41, .last_frame = 120});
+  ChangeLabels(takes_.library(), {.names = {takes_.files()[1]}}, {.add = {"jump"}});
+  const TakeLibrary library(takes_.library());
+  const LabelledBatch batch = LoadLabelledStretches(library, "jump", {}, Request(1 << 30));
+  ASSERT_THAT(batch.clips, SizeIs(2));
+  const TakeFeatures whole = LoadTakeFeatures({file}, features_, 30, {}, {.poses = true});
+  const TakeFeatures& cut = batch.clips[1].take;
+  EXPECT_EQ(batch.clips[1].class_name, "jump");
+  EXPECT_EQ(cut.stretch.first_frame, 41);
+  EXPECT_EQ(cut.stretch.last_frame, 120);
+  // 120 Hz, four frames a column: frame 41 is column 10, frame 117 is column 29.
+  ASSERT_EQ(cut.features.column_count(), 20);
+  ASSERT_EQ(cut.poses.column_count(), 20);
+  for (int column = 0; column < 20; ++column) {
+    const auto i = static_cast<std::size_t>(column);
+    EXPECT_EQ(cut.features.columns[i], whole.features.columns[i + 10]);
+    for (std::size_t value = 0; value < kPoseValues; ++value) {
+      ASSERT_NEAR(cut.poses.Column(column)[value], whole.poses.Column(column + 10)[value], 1e-3);
+    }
+  }
+  const TakeFeatures all = LoadTakeFeatures({takes_.files()[1]}, features_, 30, {});
+  EXPECT_EQ(batch.clips[0].take.features.columns, all.features.columns);
+  EXPECT_EQ(
+      ErrorOf([&] { (void)LoadLabelledStretches(library, "hop", {}, Request(1 << 30)); }).code(),
+      ErrorCode::kNotFound);
 }
 
 TEST_F(LibraryExamples, OfABackgroundAreAsManyAsFitAndAlwaysTheSame) {

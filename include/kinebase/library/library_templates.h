@@ -37,8 +37,8 @@ struct StoredTemplate {
 [[nodiscard]] MotionTemplate LoadTemplate(const std::filesystem::path& library,
                                           const std::string& name);
 
-// The template of a file; where there is none, that of this name in the library, if one is given.
-// Errors  Those of ReadTemplate and LoadTemplate.
+// The template of a file; where there is none, or a folder, that of this name in the library, if
+// one is given. Errors  Those of ReadTemplate and LoadTemplate.
 [[nodiscard]] MotionTemplate ReadOrLoadTemplate(const std::filesystem::path& file_or_name,
                                                 const std::filesystem::path& library);
 
