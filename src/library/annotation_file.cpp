@@ -133,7 +133,8 @@ std::vector<SegmentLabel> ParseSegmentLabels(std::string_view text, const fs::pa
                        .label = row[columns.label],
                        .first_frame = ParseFrame(row[columns.first], place),
                        .last_frame = ParseFrame(row[columns.last], place),
-                       .line = table.lines[i]};
+                       .line = table.lines[i],
+                       .file = row[columns.file]};
     if (label.last_frame < label.first_frame) {
       throw Error(ErrorCode::kMalformedFile,
                   fmt::format("the last frame, {}, comes before the first, {}", label.last_frame,

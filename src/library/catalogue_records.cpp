@@ -121,6 +121,16 @@ void RemoveAnnotation(const Catalogue& catalogue, const AnnotationOfTake& row) {
       .Run();
 }
 
+void CutAnnotations(const Catalogue& catalogue, std::int64_t take, std::int64_t frames) {
+  for (AnnotationOfTake& row : AnnotationRows(catalogue)) {
+    StoredAnnotation& annotation = row.annotation;
+    if (row.take != take || !annotation.is_intact || annotation.last_frame <= frames) continue;
+    RemoveAnnotation(catalogue, row);
+    annotation.last_frame = frames;
+    if (annotation.first_frame <= frames) PutAnnotation(catalogue, row);
+  }
+}
+
 std::vector<std::string> DamagedRecords(const Catalogue& catalogue) {
   std::vector<std::string> damaged;
   for (const StoredTemplate& stored : TemplateRows(catalogue)) {

@@ -27,6 +27,8 @@ struct AnnotationOfTake {
 void RemoveTemplate(const Catalogue& catalogue, const std::string& name);
 void PutTemplate(const Catalogue& catalogue, const StoredTemplate& stored);
 void PutAnnotation(const Catalogue& catalogue, const AnnotationOfTake& row);
+// Keeps of a take's annotations what lies within its frames.
+void CutAnnotations(const Catalogue& catalogue, std::int64_t take, std::int64_t frames);
 void RemoveAnnotation(const Catalogue& catalogue, const AnnotationOfTake& row);
 
 // Those whose rows are not what was written, as messages name them.

@@ -64,6 +64,14 @@ void Store(const fs::path& library, std::span<const StoredTake> takes) {
   transaction.Commit();
 }
 
+// A label of all frames is one of the take as a whole: tables have no other way to say it.
+StoredLabel Labelled(std::string_view text, std::int64_t first_frame, std::int64_t last_frame,
+                     std::int64_t frames) {
+  const bool is_whole = first_frame <= 1 && last_frame >= frames;
+  if (is_whole) return {std::string(Trim(text))};
+  return {std::string(Trim(text)), first_frame, std::min(last_frame, frames)};
+}
+
 StoredLabel ToStored(const SegmentLabel& label, std::int64_t frames, const Place& place) {
   if (label.first_frame > frames) {
     throw Error(ErrorCode::kInvalidArgument,
@@ -74,7 +82,7 @@ StoredLabel ToStored(const SegmentLabel& label, std::int64_t frames, const Place
   if (Trim(label.label).empty()) {
     throw Error(ErrorCode::kInvalidArgument, "the label is empty", place);
   }
-  return {std::string(Trim(label.label)), label.first_frame, std::min(label.last_frame, frames)};
+  return Labelled(label.label, label.first_frame, label.last_frame, frames);
 }
 
 }  // namespace
@@ -92,7 +100,10 @@ LabelReport ChangeLabels(const fs::path& library, const TakeChoice& choice,
     StoredTake take = *chosen;
     report.removed += static_cast<std::int64_t>(Remove(change, take));
     for (const std::string& label : change.add) {
-      const StoredLabel added{std::string(Trim(label)), change.first_frame, change.last_frame};
+      const StoredLabel added =
+          change.first_frame == 0
+              ? StoredLabel{std::string(Trim(label))}
+              : Labelled(label, change.first_frame, change.last_frame, take.frame_count);
       report.added += Add(added, take) ? 1 : 0;
     }
     if (take.labels != chosen->labels) changed.push_back(std::move(take));
@@ -112,7 +123,7 @@ LabelReport AddSegmentLabels(const fs::path& library, const TakeChoice& choice,
   std::map<const StoredTake*, StoredTake> changed;
   for (const SegmentLabel& label : labels) {
     const Place place{table, label.line};
-    const StoredTake* take = recordings.Find({}, label.recording, place);
+    const StoredTake* take = recordings.Find(label.file, label.recording, place);
     if (take == nullptr) {
       ++report.passed_over;
       continue;

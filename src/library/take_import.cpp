@@ -18,6 +18,7 @@
 #include "kinebase/library/take_library.h"
 #include "kinebase/motion/motion_editing.h"
 #include "library/catalogue.h"
+#include "library/catalogue_records.h"
 #include "library/checksum.h"
 #include "library/damage.h"
 #include "library/library_layout.h"
@@ -236,7 +237,8 @@ class Importer {
     if (has_same_content && std::ranges::any_of(take.features, [&](const StoredFeatures& each) {
           return IsWanted(each);
         })) {
-      if (!Rename(source, take)) arrival.state = ImportState::kUnchanged;
+      const bool is_noted = NoteOrigin(source, take);
+      if (!Rename(source, take) && !is_noted) arrival.state = ImportState::kUnchanged;
       return;
     }
     if (!has_same_content) take.features.clear();
@@ -289,6 +291,24 @@ class Importer {
     return is_new;
   }
 
+  // What version 1 did not note of a take; whether there was anything to note.
+  bool NoteOrigin(const ImportSource& source, StoredTake& take) const {
+    if (take.origin.imported_s != 0 || source.make) return false;
+    if (take.description.empty()) take.description = Hdm05Description(source.file);
+    take.skeleton = internal::SkeletonAt(SkeletonOf(source.file, options_.load));
+    take.origin = internal::OriginOf(source.file, options_.load);
+    return true;
+  }
+
+  // Of labels what lies within the take, which may have become shorter.
+  static void CutLabels(StoredTake& take) {
+    std::erase_if(take.labels,
+                  [&](const StoredLabel& label) { return label.first_frame > take.frame_count; });
+    for (StoredLabel& label : take.labels) {
+      label.last_frame = std::min(label.last_frame, take.frame_count);
+    }
+  }
+
   void ReadContents(const ImportSource& source, Arrival& arrival) const {
     const internal::MemoryGate::Pass pass(reading_, kBytesForAByte * SizeOf(source.file));
     StoredTake& take = arrival.take;
@@ -300,8 +320,9 @@ class Importer {
     take.format = recording.format;
     take.rate_hz = recording.rate_hz();
     take.frame_count = recording.frame_count();
+    CutLabels(take);
     if (take.description.empty()) take.description = Hdm05Description(source.file);
-    take.skeleton = internal::SkeletonFileOf(recording);
+    take.skeleton = internal::SkeletonAt(recording.skeleton_path);
     take.origin = internal::OriginOf(source.file, options_.load);
     arrival.diagnostics = std::move(recording.diagnostics);
     std::erase_if(take.features, [&](const StoredFeatures& each) { return IsSameSet(each); });
@@ -365,6 +386,7 @@ class Importer {
     for (const Arrival& arrival : arrivals) {
       if (!arrival.error && arrival.state != ImportState::kUnchanged) {
         catalogue_.PutTake(arrival.take);
+        CutAnnotations(arrival.take);
       }
     }
     const std::vector<std::int64_t> dropped = catalogue_.DropUnusedSegments();
@@ -373,6 +395,12 @@ class Importer {
       std::erase_if(stored_, [&](const auto& entry) { return entry.second.segment == unused; });
     }
     internal::RemoveSegments(library_, dropped);
+  }
+
+  void CutAnnotations(const StoredTake& take) const {
+    const auto known = known_.find(take.path.native());
+    if (known == known_.end() || known->second.frame_count <= take.frame_count) return;
+    internal::CutAnnotations(catalogue_, take.id, take.frame_count);
   }
 
   [[nodiscard]] std::int64_t WriteSegment(std::int64_t segment,

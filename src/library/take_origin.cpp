@@ -43,9 +43,9 @@ fs::path Resolved(const fs::path& file) {
   return unreachable ? fs::absolute(file, unreachable) : resolved;
 }
 
-StoredSkeleton SkeletonFileOf(const Recording& recording) {
-  if (recording.skeleton_path.empty()) return {};
-  return {Resolved(recording.skeleton_path), KeyOf({MappedFile(recording.skeleton_path).text()})};
+StoredSkeleton SkeletonAt(const fs::path& file) {
+  if (file.empty()) return {};
+  return {Resolved(file), KeyOf({MappedFile(file).text()})};
 }
 
 TakeOrigin OriginOf(const fs::path& file, const LoadOptions& options) {

@@ -11,8 +11,8 @@ namespace kinebase::internal {
 // The path as the library has it: links followed, where it can be reached.
 [[nodiscard]] std::filesystem::path Resolved(const std::filesystem::path& file);
 
-// The skeleton file of a recording, with the key of its bytes; empty if it has none.
-[[nodiscard]] StoredSkeleton SkeletonFileOf(const Recording& recording);
+// A skeleton file with the key of its bytes; empty for no file.
+[[nodiscard]] StoredSkeleton SkeletonAt(const std::filesystem::path& file);
 
 // What is true of a file now.
 [[nodiscard]] TakeOrigin OriginOf(const std::filesystem::path& file, const LoadOptions& options);

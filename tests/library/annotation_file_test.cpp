@@ -36,9 +36,9 @@ class LabelFile : public ::testing::Test {
 
 TEST_F(LabelFile, KnowsBothForms) {
   EXPECT_THAT(Read("class,file,first_frame,last_frame\nsquat,gym/take.amc,3,9\n"),
-              ElementsAre(SegmentLabel{"take", "squat", 3, 9, 2}));
+              ElementsAre(SegmentLabel{"take", "squat", 3, 9, 2, "gym/take.amc"}));
   EXPECT_THAT(Read("trial,source,label,first_frame_1based,last_frame_1based\n01_01,x,jump,1,2\n"),
-              ElementsAre(SegmentLabel{"01_01", "jump", 1, 2, 2}));
+              ElementsAre(SegmentLabel{"01_01", "jump", 1, 2, 2, "01_01"}));
 }
 
 TEST_F(LabelFile, SaysWhatIsWrongWhere) {
@@ -53,7 +53,7 @@ TEST(RealLabels, AreRead) {
   KINEBASE_NEEDS_TEST_DATA();
   const auto labels = ReadSegmentLabels(test::TestData("data/cmu/labels/frame_segments_120hz.csv"));
   ASSERT_FALSE(labels.empty());
-  EXPECT_EQ(labels.front(), (SegmentLabel{"01_01", "jump", 165, 302, 2}));
+  EXPECT_EQ(labels.front(), (SegmentLabel{"01_01", "jump", 165, 302, 2, "01_01"}));
 }
 
 TEST(FormatElan, HoldsTimesAndTiers) {

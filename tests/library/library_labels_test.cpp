@@ -73,6 +73,45 @@ TEST_F(LabelledLibrary, KeepsLabelsWhenTakesAreImportedAgain) {
   EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, IsEmpty());
 }
 
+TEST_F(LabelledLibrary, IsLabelledAsItWasByTheTableThatItWrites) {
+  // Two takes of one name: the table has their paths.
+  const fs::path twin = takes_.folder() / "b" / "HDM_xx_wave_001_120.amc";
+  test::WriteMadeUpTake(twin, 8, 50);
+  ImportTakes(takes_.library(), std::vector<ImportSource>{{.file = twin}}, MadeUpTakes::Options());
+  Change({.add = {"gym"}});
+  Change({.add = {"up"}, .first_frame = 3, .last_frame = 9}, {.names = {twin}});
+  Change({.add = {"all"}, .first_frame = 1, .last_frame = 50}, {.names = {twin}});
+  std::vector<std::vector<StoredLabel>> before;
+  for (std::size_t i = 0; i < 4; ++i) before.push_back(Labels(i));
+  const TakeLibrary library(takes_.library());
+  const std::string table = FormatLabelTable(library.Choose({}));
+  Change({.remove = {"gym", "up", "all"}});
+  AddSegmentLabels(takes_.library(), {}, ParseSegmentLabels(table, "t.csv"), "t.csv");
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(Labels(i), before[i]);
+}
+
+TEST_F(LabelledLibrary, KeepsOfATakeThatBecameShorterWhatLiesWithinIt) {
+  Change({.add = {"gym"}}, Only(1));
+  Change({.add = {"in"}, .first_frame = 2, .last_frame = 9}, Only(1));
+  Change({.add = {"over"}, .first_frame = 30, .last_frame = 60}, Only(1));
+  Change({.add = {"behind"}, .first_frame = 50, .last_frame = 60}, Only(1));
+  const std::string table =
+      "file,class,first_frame,last_frame\nHDM_xx_wave_002_120,in,2,9\n"
+      "HDM_xx_wave_002_120,over,30,60\nHDM_xx_wave_002_120,behind,50,60\n";
+  StoreAnnotations(takes_.library(), {}, ParseAnnotationTable(table, "a.csv"), "a.csv");
+  test::WriteMadeUpTake(takes_.files()[1], 77, 44);
+  EXPECT_EQ(takes_.Import().updated, 1);
+  EXPECT_THAT(Labels(1), ElementsAre(StoredLabel{"gym"}, StoredLabel{"in", 2, 9},
+                                     StoredLabel{"over", 30, 44}));
+  const auto annotations = ListAnnotations(takes_.library(), {}).annotations;
+  ASSERT_EQ(annotations.size(), 2U);
+  EXPECT_EQ(annotations[0].last_frame, 9);
+  EXPECT_EQ(annotations[1].last_frame, 44);
+  const VerifyReport report = VerifyLibrary(takes_.library());
+  EXPECT_THAT(report.damaged, IsEmpty());
+  EXPECT_THAT(report.damaged_records, IsEmpty());
+}
+
 TEST_F(LabelledLibrary, RefusesWhatMakesNoSenseAndChangesNothing) {
   const auto refused = [&](const LabelChange& change) {
     const Error error = ErrorOf([&] { Change(change); });

@@ -17,6 +17,7 @@
 #include "kinebase/library/take_library.h"
 #include "kinebase/motion/kinematics.h"
 #include "kinebase/motion/motion_editing.h"
+#include "library/catalogue.h"
 #include "library/made_up_takes.h"
 
 namespace kinebase {
@@ -88,6 +89,29 @@ TEST(Import, IsNoWorkTheSecondTime) {
   EXPECT_THAT(StatesOf(takes, MadeUpTakes::Options()),
               ElementsAre(kUnchanged, kUnchanged, kUnchanged));
   EXPECT_EQ(FilesBelow(takes.library() / "segments"), files);
+}
+
+// Of a take of version 1 nobody knows where it came from, until its file is imported again.
+TEST(Import, NotesWhatVersion1DidNot) {
+  const MadeUpTakes takes(1);
+  takes.Import();
+  const StoredTake noted = TakeLibrary(takes.library()).takes().front();
+  {
+    StoredTake of_version_1 = noted;
+    of_version_1.skeleton = {};
+    of_version_1.origin = {};
+    internal::Catalogue catalogue(takes.library(), internal::SqliteDatabase::Access::kCreate);
+    internal::SqliteTransaction transaction(catalogue.database(),
+                                            internal::SqliteTransaction::Kind::kWrite);
+    catalogue.PutTake(of_version_1);
+    transaction.Commit();
+  }
+  EXPECT_EQ(takes.Import().updated, 1);
+  const StoredTake again = TakeLibrary(takes.library()).takes().front();
+  EXPECT_EQ(again.skeleton, noted.skeleton);
+  EXPECT_EQ(again.origin.file_bytes, noted.origin.file_bytes);
+  EXPECT_EQ(again.features, noted.features);
+  EXPECT_EQ(takes.Import().unchanged, 1);
 }
 
 TEST(Import, ReadsAgainWhatChangedAndNothingElse) {

@@ -15,9 +15,10 @@ namespace kinebase {
 struct SegmentLabel {
   std::string recording;  // Name of its file, without folder and extension.
   std::string label;
-  std::int64_t first_frame = 0;  // From 1, inclusive.
-  std::int64_t last_frame = 0;   // May lie behind the recording's end.
-  std::int64_t line = 0;         // Of the table.
+  std::int64_t first_frame = 0;     // From 1, inclusive.
+  std::int64_t last_frame = 0;      // May lie behind the recording's end.
+  std::int64_t line = 0;            // Of the table.
+  std::filesystem::path file = {};  // As the table has it.
 
   friend bool operator==(const SegmentLabel&, const SegmentLabel&) = default;
 };

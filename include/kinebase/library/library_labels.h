@@ -40,7 +40,8 @@ LabelReport ChangeLabels(const std::filesystem::path& library, const TakeChoice&
                          const LabelChange& change);
 
 // Adds labels of stretches from a table (ReadSegmentLabels) to those of the chosen takes whose
-// files have the names that the table has. What a stretch has behind its take's end is left out.
+// paths, or else names, the table has. A stretch of all frames is the take as a whole. What a
+// stretch has behind its take's end is left out.
 //
 // table   For messages.
 // Errors  As ChangeLabels; NotFound if no row is of any of the takes; InvalidArgument with the line
