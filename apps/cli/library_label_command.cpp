@@ -1,5 +1,6 @@
 // kinebase library label, compact: what is changed of the takes of a library.
 
+#include "cli/failure_output.h"
 #include "cli/library_actions.h"
 #include "fmt/format.h"
 #include "kinebase/core/text_scanner.h"
@@ -77,14 +78,6 @@ int Label(const LibraryOptions& options) {
   return kDone;
 }
 
-Json FailuresAsJson(const std::vector<TakeFailure>& failures) {
-  Json json = Json::array();
-  for (const TakeFailure& failure : failures) {
-    json.push_back({{"file", failure.path.string()}, {"message", failure.error.what()}});
-  }
-  return json;
-}
-
 int Compact(const LibraryOptions& options) {
   const CompactReport report =
       CompactLibrary(options.library, {.progress = MakeProgress(options.common)});
@@ -95,7 +88,7 @@ int Compact(const LibraryOptions& options) {
                  {"bytes_before", report.bytes_before},
                  {"bytes_after", report.bytes_after},
                  {"bytes_freed", report.bytes_before - report.bytes_after}};
-    if (!report.failures.empty()) json["failed"] = FailuresAsJson(report.failures);
+    if (!report.failures.empty()) json["failed"] = FailuresToJson(report.failures);
     PrintJson(json);
   } else {
     Print(fmt::format("{} freed; {} in {}, before {} in {}\n",
