@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "cli/failure_output.h"
 #include "fmt/format.h"
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
@@ -188,13 +189,7 @@ Json ToJson(const Annotation& annotation) {
   if (annotation.accuracy) {
     json["accuracy"] = AccuracyToJson(*annotation.accuracy, annotation.classes);
   }
-  if (!annotation.failures.empty()) {
-    Json failed = Json::array();
-    for (const auto& [path, error] : annotation.failures) {
-      failed.push_back({{"file", path.string()}, {"message", error.what()}});
-    }
-    json["failed"] = std::move(failed);
-  }
+  if (!annotation.failures.empty()) json["failed"] = FailuresToJson(annotation.failures);
   return json;
 }
 

@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/failure_output.h"
 #include "cli/feature_options.h"
 #include "fmt/format.h"
 #include "kinebase/core/mapped_file.h"
@@ -64,12 +65,8 @@ void ShowTake(const ImportedTake& take, const CommonOptions& options) {
 }
 
 Json ToJson(const ImportReport& report, double elapsed_s) {
-  Json failed = Json::array();
-  for (const TakeFailure& failure : report.failures) {
-    failed.push_back({{"file", failure.path.string()}, {"message", failure.error.what()}});
-  }
   return {{"added", report.added},         {"updated", report.updated},
-          {"unchanged", report.unchanged}, {"failed", std::move(failed)},
+          {"unchanged", report.unchanged}, {"failed", FailuresToJson(report.failures)},
           {"frames", report.frames},       {"elapsed_s", elapsed_s}};
 }
 

@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/failure_output.h"
 #include "cli/feature_options.h"
 #include "cli/take_filter.h"
 #include "cli/update_template.h"
@@ -139,14 +140,6 @@ std::filesystem::path DefaultOutput(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' '; }, '_');
   return name + ".template.json";
-}
-
-Json FailuresToJson(const std::vector<TakeFailure>& failures) {
-  Json list = Json::array();
-  for (const auto& [path, error] : failures) {
-    list.push_back({{"file", path.string()}, {"message", error.what()}});
-  }
-  return list;
 }
 
 MotionTemplate MakeTemplate(const LearnCommandOptions& options, const FeatureSet& features,

@@ -321,10 +321,7 @@ void PrintFailures(std::span<const TakeFailure> failures) {
 }
 
 void AddFailures(std::span<const TakeFailure> failures, Json& json) {
-  for (const TakeFailure& failure : failures) {
-    json["failed"].push_back(
-        {{"file", TextOrNull(failure.path.string())}, {"message", failure.error.what()}});
-  }
+  if (!failures.empty()) json["failed"] = FailuresToJson(failures);
 }
 
 int ExitCodeOf(std::span<const TakeFailure> failures) {

@@ -1,5 +1,6 @@
 #include "cli/search_output.h"
 
+#include "cli/failure_output.h"
 #include "fmt/format.h"
 #include "kinebase/core/csv.h"
 #include "kinebase/core/text_scanner.h"
@@ -20,13 +21,7 @@ Json HitsToJson(const std::vector<NamedHit>& hits, const std::vector<TakeFailure
                     {"confidence", hit.confidence ? Json(*hit.confidence) : Json()}});
   }
   Json json = {{"hits", std::move(list)}, {"scanned_frames", frames}, {"elapsed_s", elapsed_s}};
-  if (!failures.empty()) {
-    Json failed = Json::array();
-    for (const auto& [path, error] : failures) {
-      failed.push_back({{"file", path.string()}, {"message", error.what()}});
-    }
-    json["failed"] = std::move(failed);
-  }
+  if (!failures.empty()) json["failed"] = FailuresToJson(failures);
   return json;
 }
 
