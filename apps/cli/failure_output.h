@@ -11,7 +11,8 @@ namespace kinebase::cli {
 [[nodiscard]] inline Json FailuresToJson(std::span<const TakeFailure> failures) {
   Json list = Json::array();
   for (const auto& [path, error] : failures) {
-    list.push_back({{"file", TextOrNull(path.string())}, {"message", error.what()}});
+    list.push_back(
+        {{"file", path.empty() ? Json() : Json(path.string())}, {"message", error.what()}});
   }
   return list;
 }

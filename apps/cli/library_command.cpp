@@ -7,6 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/failure_output.h"
 #include "cli/library_actions.h"
 #include "fmt/format.h"
 #include "fmt/ranges.h"
