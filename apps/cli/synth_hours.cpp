@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRateHz = 30;  // That of the features: what is searched needs no more.
 constexpr std::int64_t kFramesATake = 9000;  // Five minutes.
-constexpr int kTakesAnActor = 12;  // An hour by everyone.
+constexpr int kTakesAnActor = 12;            // An hour by everyone.
 constexpr int kMotionVersion = 1;  // To be raised when the same seed comes to give other motion.
 
 Recording MakeTake(int actor_number, int number, double duration_s, std::uint64_t seed) {
