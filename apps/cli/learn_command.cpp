@@ -465,6 +465,26 @@ int Run(LearnCommandOptions& options) {
   return batch.failures.empty() ? kDone : kPartFailed;
 }
 
+void AddMethodOptions(CLI::App& command, LearnCommandOptions& options) {
+  command
+      .add_option("--method", options.method,
+                  "mt, as in the paper; mt+, also what sets the class off from other motion: the "
+                  "default where --background or --all-classes gives some")
+      ->check(OneOf({"mt", "mt+"}))
+      ->type_name("mt|mt+");
+  command
+      .add_option("--background", options.background,
+                  "Other motion for mt+, without labels, also a library: best what will be "
+                  "searched")
+      ->type_name("PATH");
+  command.add_flag("--styles", options.styles,
+                   "Several templates for a class whose clips fall into groups (method mt+)");
+  command.add_option("--max-rounds", options.max_rounds, "Rounds of learning at most")
+      ->check(WholeNumber(1, 10000))
+      ->capture_default_str()
+      ->type_name("N");
+}
+
 // After the others: what a template was learned with cannot be changed by hits.
 void AddUpdateOptions(CLI::App& command, LearnCommandOptions& options) {
   auto* update = command
@@ -538,23 +558,7 @@ void AddLearnCommand(CLI::App& program, int& exit_code) {
         ->type_name("bonn|paper");
   }
   AddRateOption(*command, options->features.rate_hz);
-  command
-      ->add_option("--method", options->method,
-                   "mt, as in the paper; mt+, also what sets the class off from other motion: the "
-                   "default where --background or --all-classes gives some")
-      ->check(OneOf({"mt", "mt+"}))
-      ->type_name("mt|mt+");
-  command
-      ->add_option("--background", options->background,
-                   "Other motion for mt+, without labels, also a library: best what will be "
-                   "searched")
-      ->type_name("PATH");
-  command->add_flag("--styles", options->styles,
-                    "Several templates for a class whose clips fall into groups (method mt+)");
-  command->add_option("--max-rounds", options->max_rounds, "Rounds of learning at most")
-      ->check(WholeNumber(1, 10000))
-      ->capture_default_str()
-      ->type_name("N");
+  AddMethodOptions(*command, *options);
   AddUpdateOptions(*command, *options);
   AddOutputOptions(*command, options->common);
   AddThreadsOption(*command, options->common);
