@@ -28,17 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using internal::Catalogue;
+using internal::FileBytes;
 using internal::SqliteDatabase;
 using internal::SqliteTransaction;
 
 // Where the features of a take are: segment and slot.
 using Location = std::pair<std::int64_t, int>;
-
-std::int64_t FileBytes(const fs::path& path) {
-  std::error_code unreachable;
-  const auto bytes = fs::file_size(path, unreachable);
-  return unreachable ? 0 : static_cast<std::int64_t>(bytes);
-}
 
 std::int64_t LibraryBytes(const fs::path& library) {
   std::int64_t bytes = FileBytes(internal::CatalogueFile(library));

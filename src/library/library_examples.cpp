@@ -140,8 +140,9 @@ LabelledBatch LoadLabelledStretches(const TakeLibrary& library, const std::strin
   if (with_label.labels.empty()) with_label.labels = {label};
   Chosen takes =
       library.TakesWith(*request.features, request.rate_hz, with_label, request.with_poses);
-  std::erase_if(
-      takes, [&](const StoredTake* take) { return std::ranges::none_of(take->labels, has_label); });
+  std::erase_if(takes, [&](const StoredTake* take) {  // Damaged ones are to be named.
+    return take->is_intact && std::ranges::none_of(take->labels, has_label);
+  });
   if (takes.empty()) {
     throw Error(ErrorCode::kNotFound, fmt::format("has no label '{}' in these takes", label),
                 {.file = library.folder()});

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <system_error>
 
 #include "fmt/format.h"
 
@@ -27,6 +28,13 @@ inline std::filesystem::path SegmentFolder(const std::filesystem::path& library)
 inline std::filesystem::path SegmentPath(const std::filesystem::path& library,
                                          std::int64_t segment) {
   return SegmentFolder(library) / fmt::format("{:08}.segment", segment);
+}
+
+// Of a file; 0 where that is not known, which reading it will say.
+inline std::int64_t FileBytes(const std::filesystem::path& file) {
+  std::error_code unreachable;
+  const auto bytes = std::filesystem::file_size(file, unreachable);
+  return unreachable ? 0 : static_cast<std::int64_t>(bytes);
 }
 
 }  // namespace kinebase::internal

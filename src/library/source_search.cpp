@@ -33,12 +33,20 @@ std::vector<QueryGroup> GroupQueries(std::span<const SearchQuery> queries) {
   return groups;
 }
 
+std::vector<QuantizedTemplate> Quantized(std::span<const SearchQuery> queries) {
+  std::vector<QuantizedTemplate> quantized;
+  quantized.reserve(queries.size());
+  for (const SearchQuery& query : queries) quantized.push_back(Quantize(query.motion_template));
+  return quantized;
+}
+
 class Search {
  public:
   Search(std::span<const SearchQuery> queries, const SourceSearchOptions& options)
       : queries_(queries),
         options_(options),
         groups_(GroupQueries(queries)),
+        quantized_(Quantized(queries)),
         best_(queries.size()) {}
 
   SourceHits Run(const TakeSource& source) {
@@ -111,14 +119,13 @@ class Search {
       return SearchTakes(*queries_[i].fuzzy, at_hand.takes,
                          {.faults = options_.faults, .most_hits = options_.most_hits});
     }
-    return SearchTakes(Quantize(queries_[i].motion_template), at_hand.takes, OptionsOf(i));
+    return SearchTakes(quantized_[i], at_hand.takes, OptionsOf(i));
   }
 
   std::vector<TakeHit> SearchStretches(std::size_t i, const TakesAtHand& at_hand,
                                        std::span<const Stretch> stretches) {
     found_.searched_columns += CountColumns(stretches);
-    return SearchTakes(Quantize(queries_[i].motion_template), at_hand.takes, stretches,
-                       OptionsOf(i));
+    return SearchTakes(quantized_[i], at_hand.takes, stretches, OptionsOf(i));
   }
 
   void SearchRivals(const std::vector<std::size_t>& rivals, const TakesAtHand& at_hand) {
@@ -171,6 +178,7 @@ class Search {
   std::span<const SearchQuery> queries_;
   const SourceSearchOptions& options_;
   std::vector<QueryGroup> groups_;
+  std::vector<QuantizedTemplate> quantized_;  // [query]
   std::vector<std::vector<SourceHit>> best_;  // [query]
   std::vector<bool> is_counted_;              // [place in the source]
   ProgressCallback progress_;                 // Of each search.

@@ -109,12 +109,6 @@ std::vector<ImportSource> WithoutRepeats(std::span<const ImportSource> sources) 
 // poses. AMC takes 3.5; the rest is for formats that pack their numbers.
 constexpr std::int64_t kBytesForAByte = 8;
 
-std::int64_t SizeOf(const fs::path& file) {
-  std::error_code unreachable;  // Reading it will say so.
-  const auto size = fs::file_size(file, unreachable);
-  return unreachable ? 0 : static_cast<std::int64_t>(size);
-}
-
 // What became of one source, on its way into the catalogue.
 struct Arrival {
   StoredTake take;
@@ -156,7 +150,7 @@ class Importer {
     std::int64_t bytes = 0;
     std::size_t size = 0;
     for (; size < std::min(sources.size(), most); ++size) {
-      bytes += SizeOf(sources[size].file);
+      bytes += internal::FileBytes(sources[size].file);
       if (size > 0 && bytes > options_.memory_bytes / 4) break;
     }
     return size;
@@ -310,7 +304,8 @@ class Importer {
   }
 
   void ReadContents(const ImportSource& source, Arrival& arrival) const {
-    const internal::MemoryGate::Pass pass(reading_, kBytesForAByte * SizeOf(source.file));
+    const internal::MemoryGate::Pass pass(reading_,
+                                          kBytesForAByte * internal::FileBytes(source.file));
     StoredTake& take = arrival.take;
     Recording recording = source.make ? source.make() : LoadRecording(source.file, options_.load);
     const TakeName listed = take.name;  // Empty for a new take.

@@ -344,17 +344,4 @@ std::vector<const StoredTake*> TakeLibrary::TakesWith(const FeatureSet& features
   return chosen;
 }
 
-TakeBatch TakeLibrary::Load(const FeatureSet& features, double rate_hz, const TakeFilter& filter,
-                            bool with_poses) const {
-  TakeBatch batch;
-  for (const StoredTake* take : TakesWith(features, rate_hz, filter, with_poses)) {
-    try {
-      batch.takes.push_back(LoadTake(*take, features, rate_hz, with_poses));
-    } catch (const Error& error) {
-      batch.failures.push_back({take->path, error});
-    }
-  }
-  return batch;
-}
-
 }  // namespace kinebase

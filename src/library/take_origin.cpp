@@ -8,6 +8,7 @@
 #include "kinebase/core/text_scanner.h"
 #include "library/catalogue_records.h"
 #include "library/checksum.h"
+#include "library/library_layout.h"
 
 namespace kinebase::internal {
 namespace {
@@ -53,10 +54,9 @@ TakeOrigin OriginOf(const fs::path& file, const LoadOptions& options) {
   const auto changed = fs::last_write_time(file, unreachable);
   const auto since_1970 = unreachable ? std::chrono::system_clock::duration(0)
                                       : std::chrono::file_clock::to_sys(changed).time_since_epoch();
-  const auto bytes = fs::file_size(file, unreachable);
   return {.imported_s = SecondsSince1970(),
           .file_time_s = std::chrono::floor<std::chrono::seconds>(since_1970).count(),
-          .file_bytes = unreachable ? 0 : static_cast<std::int64_t>(bytes),
+          .file_bytes = FileBytes(file),
           .program = "kinebase " KINEBASE_VERSION,
           .options = OptionsText(options)};
 }

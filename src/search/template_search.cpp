@@ -1,5 +1,9 @@
 #include "kinebase/search/template_search.h"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/parallel.h"
@@ -136,6 +140,39 @@ std::vector<Candidate> ScanPiece(const Plans& plans, const FeatureView& recordin
   return candidates;
 }
 
+struct RecordingCandidates {
+  int recording = 0;
+  std::vector<Candidate> candidates;
+};
+
+// Of recordings that have any.
+// candidates  [piece]
+std::vector<RecordingCandidates> CollectByRecording(
+    std::span<const Piece> pieces, std::vector<std::vector<Candidate>> candidates) {
+  std::vector<RecordingCandidates> collected;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (candidates[i].empty()) continue;
+    const int recording = pieces[i].stretch.recording;
+    if (collected.empty() || collected.back().recording != recording) {
+      collected.push_back({recording, std::move(candidates[i])});
+    } else {
+      std::ranges::move(candidates[i], std::back_inserter(collected.back().candidates));
+    }
+  }
+  return collected;
+}
+
+// By recording.
+std::vector<Hit> HitsOf(std::vector<RecordingCandidates> recordings, int threads) {
+  std::vector<std::vector<Hit>> found(recordings.size());
+  ParallelFor(recordings.size(), threads, [&](std::size_t i) {
+    found[i] = internal::ExtractHits(std::move(recordings[i].candidates), recordings[i].recording);
+  });
+  std::vector<Hit> hits;
+  for (const std::vector<Hit>& each : found) hits.insert(hits.end(), each.begin(), each.end());
+  return hits;
+}
+
 // stretches  Checked.
 std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
                                  std::span<const FeatureView> recordings,
@@ -153,18 +190,8 @@ std::vector<Hit> SearchStretches(const QuantizedTemplate& motion_template,
         }
       });
 
-  std::vector<Hit> hits;
-  for (std::size_t i = 0; i < pieces.size();) {
-    const int recording = pieces[i].stretch.recording;
-    std::vector<Candidate> all;
-    for (; i < pieces.size() && pieces[i].stretch.recording == recording; ++i) {
-      all.insert(all.end(), candidates[i].begin(), candidates[i].end());
-    }
-    if (all.empty()) continue;
-    const std::vector<Hit> found = internal::ExtractHits(std::move(all), recording);
-    hits.insert(hits.end(), found.begin(), found.end());
-  }
-  return BestHits(std::move(hits), options.most_hits);
+  return BestHits(HitsOf(CollectByRecording(pieces, std::move(candidates)), options.threads),
+                  options.most_hits);
 }
 
 }  // namespace

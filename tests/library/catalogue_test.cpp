@@ -17,18 +17,13 @@ namespace kinebase {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::SqliteDatabase;
 using test::ErrorOf;
+using test::ExecuteSql;
 using test::MadeUpTakes;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-void Execute(const fs::path& library, const std::string& sql) {
-  SqliteDatabase(library / "catalogue.sqlite", SqliteDatabase::Access::kCreate)
-      .Execute(sql.c_str());
-}
 
 std::vector<std::string> NamesOf(const std::vector<const StoredTake*>& takes) {
   std::vector<std::string> names;
@@ -170,7 +165,7 @@ TEST(DamagedCatalogue, NamesTheTakeWhateverIsChangedOfIt) {
         std::string("DELETE FROM labels")}) {
     SCOPED_TRACE(change);
     test::WriteText(catalogue, good);
-    Execute(takes.library(), change);
+    ExecuteSql(takes.library(), change);
     const VerifyReport report = VerifyLibrary(takes.library());
     ASSERT_THAT(report.damaged, SizeIs(1));
     EXPECT_THAT(report.damaged[0].path.string(), HasSubstr("wave_001"));
@@ -182,8 +177,9 @@ TEST(DamagedCatalogue, NamesTheTakeWhateverIsChangedOfIt) {
 TEST(DamagedCatalogue, IsNotTrustedAndMendedByRemovingAndImporting) {
   const MadeUpTakes takes(2);
   takes.Import();
-  Execute(takes.library(), "UPDATE takes SET class = 'wawe' WHERE path LIKE '%wave_001%'");
-  const TakeBatch batch = TakeLibrary(takes.library()).Load(MadeUpTakes::Options().features, 30);
+  ExecuteSql(takes.library(), "UPDATE takes SET class = 'wawe' WHERE path LIKE '%wave_001%'");
+  const TakeBatch batch =
+      test::LoadAll(TakeLibrary(takes.library()), MadeUpTakes::Options().features, 30);
   EXPECT_THAT(batch.takes, SizeIs(1));
   ASSERT_THAT(batch.failures, SizeIs(1));
   EXPECT_THAT(batch.failures[0].error.what(), HasSubstr("is damaged in what it says of"));
@@ -204,7 +200,7 @@ TEST(DamagedCatalogue, NamesItsTakesWhateverIsAskedFor) {
   const MadeUpTakes takes(3);
   takes.Import();
   ChangeLabels(takes.library(), {}, {.add = {"gym"}});
-  Execute(takes.library(), "UPDATE takes SET class = 'wawe', actor = 'yx' WHERE id = 1");
+  ExecuteSql(takes.library(), "UPDATE takes SET class = 'wawe', actor = 'yx' WHERE id = 1");
   const TakeLibrary library(takes.library());
   for (const TakeFilter& filter :
        {TakeFilter{.classes = {"wave"}}, TakeFilter{.classes = {"kick"}}, TakeFilter{.text = "002"},
@@ -212,7 +208,8 @@ TEST(DamagedCatalogue, NamesItsTakesWhateverIsAskedFor) {
     const ChosenTakes chosen = ChooseIntactTakes(library, {.filter = filter});
     ASSERT_THAT(chosen.failures, SizeIs(1));
     EXPECT_THAT(chosen.failures[0].error.what(), HasSubstr("wave_001"));
-    EXPECT_THAT(library.Load(MadeUpTakes::Options().features, 30, filter).failures, SizeIs(1));
+    EXPECT_THAT(test::LoadAll(library, MadeUpTakes::Options().features, 30, filter).failures,
+                SizeIs(1));
   }
   EXPECT_THAT(ChooseIntactTakes(library, {.names = {takes.files()[2]}}).takes, SizeIs(1));
   EXPECT_THAT(ChooseIntactTakes(library, {.names = {takes.files()[2]}}).failures, SizeIs(1));
@@ -228,13 +225,13 @@ TEST(DamagedCatalogue, FindsAllTakesWhereWordsAreMissing) {
   const MadeUpTakes takes(3);
   takes.Import();
   for (const char* change : {"DELETE FROM take_text WHERE rowid = 2", "DROP TABLE take_text"}) {
-    Execute(takes.library(), change);
+    ExecuteSql(takes.library(), change);
     EXPECT_THAT(TakeLibrary(takes.library()).Choose({.text = "wave"}), SizeIs(3)) << change;
     EXPECT_TRUE(VerifyLibrary(takes.library()).words_are_damaged);
   }
   ChangeLabels(takes.library(), {}, {.add = {"gym"}});  // Whoever writes gets them made.
   EXPECT_FALSE(VerifyLibrary(takes.library()).words_are_damaged);
-  Execute(takes.library(), "DROP TABLE take_text");
+  ExecuteSql(takes.library(), "DROP TABLE take_text");
   CompactLibrary(takes.library());
   EXPECT_FALSE(VerifyLibrary(takes.library()).words_are_damaged);
   EXPECT_THAT(TakeLibrary(takes.library()).Choose({.text = "wave gym"}), SizeIs(3));
@@ -258,7 +255,7 @@ TEST(DamagedCatalogue, IsMendedByRemovingWhereRowsReferToNothing) {
                                                   .first_frame = 1,
                                                   .last_frame = 2}}},
                      "a.csv");
-    Execute(takes.library(), change);
+    ExecuteSql(takes.library(), change);
     const VerifyReport report = VerifyLibrary(takes.library());
     EXPECT_GT(report.damaged.size() + report.damaged_records.size(), 0U);
     RemoveTakes(takes.library(), {.damaged = true});
@@ -277,7 +274,7 @@ TEST(DamagedCatalogue, BlamesNoWordsForTheTakesThatTheyAreOf) {
   const MadeUpTakes takes(2);
   takes.Import();
   ChangeLabels(takes.library(), {.names = {takes.files()[0]}}, {.add = {"gym"}});
-  Execute(takes.library(), "UPDATE labels SET label = 'gim'");
+  ExecuteSql(takes.library(), "UPDATE labels SET label = 'gim'");
   const VerifyReport report = VerifyLibrary(takes.library());
   EXPECT_THAT(report.damaged, SizeIs(1));
   EXPECT_FALSE(report.words_are_damaged);
@@ -291,7 +288,7 @@ TEST(DamagedCatalogue, GetsItsWordsAnewByCompacting) {
         "UPDATE take_text_data SET block = zeroblob(40) WHERE id > 10",
         "DELETE FROM take_text_content WHERE id = 2"}) {
     SCOPED_TRACE(change);
-    Execute(takes.library(), change);
+    ExecuteSql(takes.library(), change);
     EXPECT_TRUE(VerifyLibrary(takes.library()).words_are_damaged);
     CompactLibrary(takes.library());
     EXPECT_FALSE(VerifyLibrary(takes.library()).words_are_damaged);
@@ -311,7 +308,7 @@ TEST(DamagedCatalogue, WithViewsOrTriggersIsRefused) {
         "ALL SELECT take + 1 FROM n) SELECT take, 1 AS feature_set, 1 AS rate_hz, 1 AS segment, "
         "1 AS slot, 1 AS poses FROM n"}) {
     test::WriteText(catalogue, good);
-    Execute(takes.library(), change);
+    ExecuteSql(takes.library(), change);
     const Error error = ErrorOf([&] { TakeLibrary opened(takes.library()); });
     EXPECT_EQ(error.code(), ErrorCode::kMalformedFile);
     EXPECT_THAT(error.what(), HasSubstr("which Kinebase did not make"));

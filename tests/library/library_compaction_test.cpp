@@ -11,12 +11,12 @@
 #include "kinebase/library/take_library.h"
 #include "kinebase/search/run_lists.h"
 #include "library/made_up_takes.h"
-#include "library/sqlite_database.h"
 
 namespace kinebase {
 namespace {
 
 namespace fs = std::filesystem;
+using test::ExecuteSql;
 using test::MadeUpTakes;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -191,8 +191,7 @@ TEST_F(CompactedLibrary, FreesNothingWhileARowIsDamaged) {
         "UPDATE features SET take = 99 WHERE take = 5", "UPDATE segments SET id = 259 WHERE id = 3",
         "UPDATE takes SET class = 'x' WHERE id = 6"}) {
     SCOPED_TRACE(change);
-    const internal::SqliteDatabase database(catalogue, internal::SqliteDatabase::Access::kCreate);
-    database.Execute(change);
+    ExecuteSql(takes_.library(), change);
     EXPECT_FALSE(CompactLibrary(takes_.library()).failures.empty());
     RemoveDamagedRecords(takes_.library());
     test::WriteMadeUpTake(takes_.folder() / "HDM_xx_wave_007_120.amc", 9, 50);
@@ -233,9 +232,7 @@ TEST_F(CompactedLibrary, LosesWhatACrashLeft) {
 }
 
 TEST_F(CompactedLibrary, GivesBackTheRoomOfTheCatalogue) {
-  internal::SqliteDatabase(takes_.library() / "catalogue.sqlite",
-                           internal::SqliteDatabase::Access::kCreate)
-      .Execute("UPDATE takes SET description = hex(zeroblob(100000))");
+  ExecuteSql(takes_.library(), "UPDATE takes SET description = hex(zeroblob(100000))");
   RemoveTakes(takes_.library(), {.damaged = true});
   const CompactReport report = CompactLibrary(takes_.library());
   EXPECT_EQ(report.segments_after, 0);

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::ErrorOf;
+using test::ExecuteSql;
 using test::MadeUpTakes;
 using testing::HasSubstr;
 using testing::SizeIs;
@@ -79,6 +80,18 @@ TEST_F(LibraryExamples, AreStretchesWithALabel) {
   EXPECT_EQ(
       ErrorOf([&] { (void)LoadLabelledStretches(library, "hop", {}, Request(1 << 30)); }).code(),
       ErrorCode::kNotFound);
+}
+
+// A row that lost its label may have been one of them.
+TEST_F(LibraryExamples, NameDamagedRowsWhateverTheirLabels) {
+  ChangeLabels(takes_.library(), {.names = {takes_.files()[1], takes_.files()[5]}},
+               {.add = {"jump"}});
+  ExecuteSql(takes_.library(), "UPDATE labels SET label = 'jumq' WHERE take = 2");
+  const LabelledBatch batch =
+      LoadLabelledStretches(TakeLibrary(takes_.library()), "jump", {}, Request(1 << 30));
+  EXPECT_THAT(batch.clips, SizeIs(1));
+  ASSERT_THAT(batch.failures, SizeIs(1));
+  EXPECT_EQ(batch.failures[0].path, fs::canonical(takes_.files()[1]));
 }
 
 TEST_F(LibraryExamples, OfABackgroundAreAsManyAsFitAndAlwaysTheSame) {

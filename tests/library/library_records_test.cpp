@@ -9,7 +9,6 @@
 #include "kinebase/library/library_templates.h"
 #include "kinebase/library/library_upkeep.h"
 #include "library/made_up_takes.h"
-#include "library/sqlite_database.h"
 
 namespace kinebase {
 namespace {
@@ -162,10 +161,8 @@ TEST_F(StoredAnnotationsTest, OfTablesThatMakeNoSenseAreRefusedWithTheLine) {
 
 TEST_F(StoredAnnotationsTest, WithDamageAreNamed) {
   Store(first_ + ",wave,3,9,0.025,,waving\n");
-  const internal::SqliteDatabase database(takes_.library() / "catalogue.sqlite",
-                                          internal::SqliteDatabase::Access::kCreate);
-  database.Execute("UPDATE annotations SET cost = 0.0");
-  database.Execute("UPDATE templates SET json = replace(json, '0.25', '0.75')");
+  test::ExecuteSql(takes_.library(), "UPDATE annotations SET cost = 0.0");
+  test::ExecuteSql(takes_.library(), "UPDATE templates SET json = replace(json, '0.25', '0.75')");
   const VerifyReport report = VerifyLibrary(takes_.library());
   EXPECT_THAT(report.damaged, IsEmpty());
   EXPECT_THAT(report.damaged_records,

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "kinebase/library/take_import.h"
+#include "kinebase/library/take_library.h"
+#include "library/sqlite_database.h"
 #include "motion/figure.h"
 #include "support/files.h"
 #include "support/temporary_folder.h"
@@ -59,6 +61,26 @@ class MadeUpTakes {
   TemporaryFolder folder_;
   std::vector<std::filesystem::path> files_;
 };
+
+// The takes that a filter leaves, read; those that cannot be read are failures.
+inline TakeBatch LoadAll(const TakeLibrary& library, const FeatureSet& features, double rate_hz,
+                         const TakeFilter& filter = {}, bool with_poses = false) {
+  TakeBatch batch;
+  for (const StoredTake* take : library.TakesWith(features, rate_hz, filter, with_poses)) {
+    try {
+      batch.takes.push_back(library.LoadTake(*take, features, rate_hz, with_poses));
+    } catch (const Error& error) {
+      batch.failures.push_back({take->path, error});
+    }
+  }
+  return batch;
+}
+
+// Changes the rows of a catalogue behind its back.
+inline void ExecuteSql(const std::filesystem::path& library, const std::string& sql) {
+  internal::SqliteDatabase(library / "catalogue.sqlite", internal::SqliteDatabase::Access::kCreate)
+      .Execute(sql.c_str());
+}
 
 // Changes one byte of a file.
 inline void Spoil(const std::filesystem::path& path, std::size_t byte) {

@@ -54,7 +54,7 @@ TEST(Import, GivesTheFeaturesThatTheFilesHave) {
   EXPECT_EQ(report.frames, 40 + 70 + 100);
   const TakeLibrary library(takes.library());
   ASSERT_THAT(library.takes(), SizeIs(3));
-  const TakeBatch batch = library.Load(options.features, 30);
+  const TakeBatch batch = test::LoadAll(library, options.features, 30);
   for (std::size_t i = 0; i < 3; ++i) {
     const TakeFeatures file = LoadTakeFeatures({takes.files()[i]}, options.features, 30, {});
     const StoredTake& stored = library.takes()[i];
@@ -151,7 +151,7 @@ TEST(Import, AddsPosesAndFurtherFeatureSetsToWhatIsThere) {
   ASSERT_THAT(library.feature_sets(), SizeIs(2));
   EXPECT_EQ(library.feature_sets()[0].name, "bonn");
   EXPECT_EQ(library.feature_sets()[1].takes, 2);
-  EXPECT_EQ(library.Load(options.features, 30).takes[0].features.columns,
+  EXPECT_EQ(test::LoadAll(library, options.features, 30).takes[0].features.columns,
             LoadTakeFeatures({takes.files()[0]}, options.features, 30, {}).features.columns);
   EXPECT_TRUE(library.takes()[0].features[0].has_poses || library.takes()[0].features[1].has_poses);
 }
@@ -169,8 +169,9 @@ TEST(Import, KeepsTheSameBytesUnderTwoNamesOnce) {
   EXPECT_EQ(library.takes()[0].features, library.takes()[1].features);
   // And goes on to have it when the first is removed.
   RemoveTakes(takes.library(), {.names = {takes.files()[0]}});
-  EXPECT_THAT(TakeLibrary(takes.library()).Load(MadeUpTakes::Options().features, 30).failures,
-              IsEmpty());
+  EXPECT_THAT(
+      test::LoadAll(TakeLibrary(takes.library()), MadeUpTakes::Options().features, 30).failures,
+      IsEmpty());
 }
 
 TEST(Import, KeepsTheSameBytesOfOneBatchOnce) {
@@ -195,7 +196,7 @@ TEST(Import, KeepsTheSameBytesOfOneBatchOnce) {
   EXPECT_EQ(heard.back(), 4U);
   EXPECT_EQ(SegmentFile(takes.Segment(1)).reader().take_count(), 2);
   const TakeLibrary library(takes.library());
-  const TakeBatch batch = library.Load(options.features, 30);
+  const TakeBatch batch = test::LoadAll(library, options.features, 30);
   ASSERT_THAT(batch.takes, SizeIs(4));
   for (const TakeFeatures& take : batch.takes) {
     EXPECT_EQ(take.features.columns,
@@ -216,8 +217,9 @@ TEST(Import, SharesNoDamagedFeatures) {
   const VerifyReport report = VerifyLibrary(takes.library());
   ASSERT_THAT(report.damaged, SizeIs(1));
   EXPECT_EQ(report.damaged[0].path, fs::canonical(takes.files()[0]));
-  EXPECT_THAT(TakeLibrary(takes.library()).Load(MadeUpTakes::Options().features, 30).takes,
-              SizeIs(1));
+  EXPECT_THAT(
+      test::LoadAll(TakeLibrary(takes.library()), MadeUpTakes::Options().features, 30).takes,
+      SizeIs(1));
 }
 
 // AMC has no field for its rate: the same bytes under another name are another motion.
@@ -233,7 +235,7 @@ TEST(Import, KnowsThatNamesTellRates) {
   const TakeLibrary library(takes.library());
   ASSERT_THAT(library.takes(), SizeIs(2));
   EXPECT_EQ(library.takes()[0].rate_hz, 60);
-  const TakeBatch batch = library.Load(features, 30);
+  const TakeBatch batch = test::LoadAll(library, features, 30);
   ASSERT_THAT(batch.takes, SizeIs(2));
   for (const TakeFeatures& take : batch.takes) {
     EXPECT_EQ(take.features.columns,

@@ -45,7 +45,8 @@ class DamagedLibrary : public testing::Test {
   // Verifying and searching agree, and the others stay as they were.
   void ExpectDamaged(const std::vector<std::string>& names) const {
     EXPECT_EQ(DamagedNames(), names);
-    const TakeBatch batch = TakeLibrary(takes_.library()).Load(MadeUpTakes::Options().features, 30);
+    const TakeBatch batch =
+        test::LoadAll(TakeLibrary(takes_.library()), MadeUpTakes::Options().features, 30);
     EXPECT_THAT(batch.failures, SizeIs(names.size()));
     EXPECT_THAT(batch.takes, SizeIs(3 - names.size()));
     for (const TakeFeatures& take : batch.takes) {
@@ -149,8 +150,9 @@ TEST_F(DamagedLibrary, WithImpossibleTakesInItsCatalogueLosesThese) {
     const TakeLibrary library(takes_.library());
     ASSERT_THAT(library.takes(), SizeIs(3));
     EXPECT_EQ(library.takes()[1].frame_count, 0);
-    for (const auto& failures : {VerifyLibrary(takes_.library()).damaged, takes_.Import().failures,
-                                 library.Load(MadeUpTakes::Options().features, 30).failures}) {
+    for (const auto& failures :
+         {VerifyLibrary(takes_.library()).damaged, takes_.Import().failures,
+          test::LoadAll(library, MadeUpTakes::Options().features, 30).failures}) {
       ASSERT_THAT(failures, SizeIs(1));
       EXPECT_THAT(failures[0].error.what(),
                   testing::AllOf(HasSubstr("wave_002_120.amc"), HasSubstr("--damaged")));
@@ -190,10 +192,10 @@ TEST(TakeLibrary, IsAsItWasWhenItWasOpened) {
   takes.Import();
   const FeatureSet features = MadeUpTakes::Options().features;
   const TakeLibrary library(takes.library());
-  const TakeBatch before = library.Load(features, 30);
+  const TakeBatch before = test::LoadAll(library, features, 30);
   RemoveTakes(takes.library(), {.names = {takes.folder()}});
   EXPECT_FALSE(fs::exists(takes.Segment(1)));
-  const TakeBatch after = library.Load(features, 30);
+  const TakeBatch after = test::LoadAll(library, features, 30);
   ASSERT_THAT(after.takes, SizeIs(3));
   EXPECT_EQ(after.takes[2].features.columns, before.takes[2].features.columns);
   EXPECT_THAT(TakeLibrary(takes.library()).takes(), IsEmpty());
@@ -203,7 +205,8 @@ TEST(TakeLibrary, SaysWhatItLacks) {
   const MadeUpTakes takes(1);
   const auto load = [&](const FeatureSet& features, const TakeFilter& filter, bool with_poses) {
     return std::string(ErrorOf([&] {
-                         (void)TakeLibrary(takes.library()).Load(features, 30, filter, with_poses);
+                         (void)test::LoadAll(TakeLibrary(takes.library()), features, 30, filter,
+                                             with_poses);
                        }).what());
   };
   const FeatureSet bonn = LoadFeatureSet("bonn");

@@ -167,7 +167,8 @@ class TakeLibrary {
   void Check(const StoredTake& take) const;
 
   // The takes that the filter leaves, by path.
-  // Errors  NotFound as Load.
+  // Errors  Those of Choose; NotFound if no take is left; if none of them has these features, or
+  //         poses where they are asked for, naming the way to get them.
   [[nodiscard]] std::vector<const StoredTake*> TakesWith(const FeatureSet& features, double rate_hz,
                                                          const TakeFilter& filter = {},
                                                          bool with_poses = false) const;
@@ -176,15 +177,6 @@ class TakeLibrary {
   // Errors  As Columns and Poses.
   [[nodiscard]] TakeFeatures LoadTake(const StoredTake& take, const FeatureSet& features,
                                       double rate_hz, bool with_poses = false) const;
-
-  // The takes that the filter leaves as LoadManyTakeFeatures gives them, without diagnostics. A
-  // take that cannot be read is a failure. All are held in memory: library/take_source.h gives
-  // them some at a time, and where they are.
-  //
-  // Errors  Those of Choose; NotFound if no take is left; if none of them has these features, or
-  //         poses where they are asked for, naming the way to get them.
-  [[nodiscard]] TakeBatch Load(const FeatureSet& features, double rate_hz,
-                               const TakeFilter& filter = {}, bool with_poses = false) const;
 
  private:
   // The entry of a take, and its segment.
