@@ -51,7 +51,7 @@ def busy_children():
 
 
 def run(*command):
-    """What the program printed as JSON, and what it took."""
+    """The first that the program printed as JSON, and what it took."""
     before = busy_children()
     begin = time.perf_counter()
     process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE,
@@ -70,7 +70,7 @@ def run(*command):
     busy = busy_children() - before
     if process.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))} failed:\n{errors}")
-    return (json.loads(out) if out.startswith("{") else {},
+    return (json.JSONDecoder().raw_decode(out)[0] if out.startswith("{") else {},
             {"clock": clock, "busy": busy, "peak": peak, "own": own})
 
 
