@@ -92,6 +92,10 @@ void CheckUsage(const LearnCommandOptions& options) {
                                  options.library.empty() ? "--list" : "--library",
                                  options.library.empty() ? "" : ", or --label WORD"));
   }
+  if (!options.library.empty() && options.background.empty() &&
+      options.common.load != LoadOptions{}) {
+    throw UsageError("takes of a --library have been read; options of reading are for files");
+  }
   if (options.styles && options.Method() == "mt") {
     throw UsageError("--styles is for --method mt+");
   }

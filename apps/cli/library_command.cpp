@@ -137,9 +137,11 @@ int List(const LibraryOptions& options) {
   double seconds = 0;
   for (const StoredTake* take : takes) seconds += SecondsOf(*take);
   if (!takes.empty()) Print(TakeTable(takes, options.show).ToString());
-  std::string note =
-      fmt::format("{}, {} min:s; {} on disk", FormatCount(std::ssize(takes), "take", "takes"),
-                  FormatTime(seconds), FormatSize(library.segment_bytes()));
+  const std::string duration =
+      seconds < 3600 ? FormatTime(seconds) + " min:s" : fmt::format("{:.1f} hours", seconds / 3600);
+  std::string note = fmt::format("{}, {}. In the library: {} in segments",
+                                 FormatCount(std::ssize(takes), "take", "takes"), duration,
+                                 FormatSize(library.segment_bytes()));
   for (const StoredFeatureSet& set : library.feature_sets()) {
     note += fmt::format("; features '{}' at {:g} Hz of {}", set.name, set.rate_hz,
                         FormatCount(set.takes, "take", "takes"));
@@ -206,7 +208,7 @@ int Verify(const LibraryOptions& options) {
   if (options.common.json) {
     PrintJson(ToJson(report, other_damage));
   } else {
-    Print(fmt::format("{}, {}: {}\n", FormatCount(report.takes, "take", "takes"),
+    Print(fmt::format("{}, {} in segments: {}\n", FormatCount(report.takes, "take", "takes"),
                       FormatSize(report.segment_bytes),
                       is_intact ? "all intact" : fmt::format("{} damaged", report.damaged.size())));
   }

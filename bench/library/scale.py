@@ -6,7 +6,8 @@ A library of made-up motion (kinebase synth --hours) grows in a temporary folder
 each size for one template and for 64 through the program. Times of making are sums of its steps. Of
 every search the median of some runs counts, after one that brings the files into the page cache; one
 of more than twenty seconds is run once. Time is by the clock and the processor's for all threads;
-memory is the highest resident memory, and the part of it that is not pages of the library's files.
+memory is the highest resident memory, and the part of it that is not mapped from files: the program's
+own, its libraries' and the library's.
 """
 
 import argparse
@@ -162,7 +163,9 @@ def row(each):
              digits(each["made"]["peak"] / 1e6), digits(each["bytes"] / each["hours"] / 1e6)]
     for searched in (each["one"], each["many"]):
         spread = searched["spread"]
-        cells += [f"{digits(searched['clock'])} ({digits(min(spread))} to {digits(max(spread))})",
+        cells += [digits(searched["clock"]) +
+                  (f" ({digits(min(spread))} to {digits(max(spread))})" if len(spread) > 1
+                   else " (once)"),
                   digits(searched["busy"]), digits(searched["peak"] / 1e6),
                   digits(searched["own"] / 1e6)]
     return "| " + " | ".join(cells) + " |"

@@ -7,6 +7,7 @@
 #include "fmt/format.h"
 #include "kinebase/core/error.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/motion/motion_file.h"
 #include "library/name_words.h"
 
 namespace kinebase::internal {
@@ -32,10 +33,18 @@ Texts TextsOf(const StoredTake& take) {
           take.description};
 }
 
+// Names of files stand there without their ending: "86_01.amc" is found as 86_01.
+std::string_view WithoutEnding(std::string_view word) {
+  const std::size_t dot = word.rfind('.');
+  const bool is_file = dot != std::string_view::npos && FindMotionFormat(word) != nullptr;
+  return is_file ? word.substr(0, dot) : word;
+}
+
 // Each word in quotes, where nothing in it is an operator; '*' for what begins so.
 std::string MatchOf(std::string_view query) {
   std::string match;
-  for (const std::string_view word : SplitTokens(query)) {
+  for (const std::string_view token : SplitTokens(query)) {
+    const std::string_view word = WithoutEnding(token);
     match += match.empty() ? "\"" : " \"";
     for (const char c : word) match += c == '"' ? std::string("\"\"") : std::string(1, c);
     match += "\"*";

@@ -4,6 +4,22 @@
 #include "library/library_layout.h"
 
 namespace kinebase::internal {
+namespace {
+
+constexpr std::string_view kAccessRemedy =
+    "it may be sound: see to its permissions and its disk, and try again";
+
+}  // namespace
+
+Error WithRemedy(const Error& error) {
+  std::string message = error.message();
+  if (IsDamage(error)) {
+    message += fmt::format("; {}", kDamageRemedy);
+  } else if (error.code() == ErrorCode::kIoFailure) {
+    message += fmt::format("; {}", kAccessRemedy);
+  }
+  return {error.code(), std::move(message), error.place()};
+}
 
 void CheckTakeRow(const StoredTake& take, const std::filesystem::path& library) {
   if (take.is_intact) return;

@@ -190,7 +190,7 @@ class Compactor {
     readable.reserve(group.size());
     for (std::size_t i = 0; i < group.size(); ++i) {
       if (errors[i]) {
-        report_.failures.push_back({PathOf(group[i].number), *errors[i]});
+        report_.failures.push_back({PathOf(group[i].number), internal::WithRemedy(*errors[i])});
       } else {
         readable.push_back(std::move(group[i]));
       }
@@ -212,7 +212,7 @@ class Compactor {
         groups[{segment.feature_set_hash(), segment.rate_hz(), segment.feature_count()}].push_back(
             std::move(old));
       } catch (const Error& error) {
-        report_.failures.push_back({PathOf(number), error});
+        report_.failures.push_back({PathOf(number), internal::WithRemedy(error)});
       }
     }
     return groups;

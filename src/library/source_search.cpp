@@ -33,10 +33,13 @@ std::vector<QueryGroup> GroupQueries(std::span<const SearchQuery> queries) {
   return groups;
 }
 
+// Of queries that are searched for otherwise nothing.
 std::vector<QuantizedTemplate> Quantized(std::span<const SearchQuery> queries) {
-  std::vector<QuantizedTemplate> quantized;
-  quantized.reserve(queries.size());
-  for (const SearchQuery& query : queries) quantized.push_back(Quantize(query.motion_template));
+  std::vector<QuantizedTemplate> quantized(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (queries[i].fuzzy || queries[i].motion_template.contrast) continue;
+    quantized[i] = Quantize(queries[i].motion_template);
+  }
   return quantized;
 }
 

@@ -20,9 +20,6 @@ using internal::Catalogue;
 using internal::SqliteDatabase;
 using internal::SqliteTransaction;
 
-constexpr std::string_view kAccessRemedy =
-    "it may be sound: see to its permissions and its disk, and try again";
-
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::ranges::find(names, name) != names.end();
 }
@@ -149,17 +146,6 @@ std::variant<SegmentFile, Error> OpenSegment(const fs::path& path) {
   }
 }
 
-// With what to do: removing takes is advised for damage alone.
-[[noreturn]] void ThrowUnusable(const Error& error) {
-  std::string message = error.message();
-  if (internal::IsDamage(error)) {
-    message += fmt::format("; {}", internal::kDamageRemedy);
-  } else if (error.code() == ErrorCode::kIoFailure) {
-    message += fmt::format("; {}", kAccessRemedy);
-  }
-  throw Error(error.code(), std::move(message), error.place());
-}
-
 }  // namespace
 
 bool TakeFilter::Accepts(const StoredTake& take) const {
@@ -234,14 +220,16 @@ TakeLibrary::Location TakeLibrary::Find(const StoredTake& take, std::uint64_t fe
   const fs::path path = internal::SegmentPath(folder_, features->segment);
   const auto found = segments_.find(features->segment);
   if (found == segments_.end()) {
-    ThrowUnusable({ErrorCode::kNotFound, "is missing in the catalogue", {.file = path}});
+    throw internal::WithRemedy(
+        {ErrorCode::kNotFound, "is missing in the catalogue", {.file = path}});
   }
-  if (const auto* error = std::get_if<Error>(&found->second)) ThrowUnusable(*error);
+  if (const auto* error = std::get_if<Error>(&found->second)) throw internal::WithRemedy(*error);
   const SegmentReader& segment = std::get<SegmentFile>(found->second).reader();
   if (!internal::HoldsFeatures(segment, *features, take.content)) {
-    ThrowUnusable({ErrorCode::kMalformedFile,
-                   fmt::format("does not hold {} as the catalogue says", take.path.string()),
-                   {.file = path}});
+    throw internal::WithRemedy(
+        {ErrorCode::kMalformedFile,
+         fmt::format("does not hold {} as the catalogue says", take.path.string()),
+         {.file = path}});
   }
   return {&segment, features->slot};
 }
@@ -253,7 +241,7 @@ std::span<const std::uint64_t> TakeLibrary::Columns(const StoredTake& take,
   try {
     return location.segment->Columns(location.slot);
   } catch (const Error& error) {
-    ThrowUnusable(error);
+    throw internal::WithRemedy(error);
   }
 }
 
@@ -273,7 +261,7 @@ JointTrajectories TakeLibrary::Poses(const StoredTake& take, std::uint64_t featu
   try {
     return UnpackPoses(location.segment->Poses(location.slot), rate_hz);
   } catch (const Error& error) {
-    ThrowUnusable(error);
+    throw internal::WithRemedy(error);
   }
 }
 
@@ -283,7 +271,7 @@ std::string TakeLibrary::RunListsOf(const StoredTake& take, std::uint64_t featur
   try {
     return location.segment->RunListsOf(location.slot);
   } catch (const Error& error) {
-    ThrowUnusable(error);
+    throw internal::WithRemedy(error);
   }
 }
 
@@ -307,7 +295,7 @@ void TakeLibrary::Check(const StoredTake& take) const {
     try {
       location.segment->CheckRunLists(location.slot);
     } catch (const Error& error) {
-      ThrowUnusable(error);
+      throw internal::WithRemedy(error);
     }
     if (features.has_poses) (void)Poses(take, features.feature_set_hash, features.rate_hz);
   }

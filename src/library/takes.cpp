@@ -12,6 +12,7 @@
 #include "kinebase/core/mapped_file.h"
 #include "kinebase/core/parallel.h"
 #include "kinebase/core/text_scanner.h"
+#include "kinebase/library/take_library.h"
 #include "library/files_below.h"
 
 namespace kinebase {
@@ -97,6 +98,10 @@ std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
     }
     if (fs::is_directory(path, unreachable)) {
       auto below = FilesBelow(path, IsReadable);
+      if (below.empty() && IsLibrary(path)) {
+        throw Error(ErrorCode::kInvalidArgument,
+                    "is a library, not a folder of motion files; --library takes it", {path});
+      }
       if (below.empty()) {
         throw Error(ErrorCode::kNotFound,
                     "holds no motion file; looked for " + KnownFormats() + " in it and below",

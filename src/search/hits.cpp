@@ -15,7 +15,7 @@ int CeilOfPart(int length, int divisor) { return (length + divisor - 1) / diviso
 class ColumnNumbers {
  public:
   explicit ColumnNumbers(std::vector<int> columns) : columns_(std::move(columns)) {
-    std::ranges::sort(columns_);
+    if (!std::ranges::is_sorted(columns_)) std::ranges::sort(columns_);
     const auto repeated = std::ranges::unique(columns_);
     columns_.erase(repeated.begin(), repeated.end());
     numbers_.resize(columns_.size());
@@ -41,11 +41,17 @@ class ColumnNumbers {
   std::vector<int> numbers_;
 };
 
+// Candidates in the order of their columns are mostly in that of their starts, too, which many
+// share.
 ColumnNumbers NumbersOf(std::span<const internal::Candidate> candidates,
                         std::int32_t internal::Candidate::*column) {
   std::vector<int> columns;
   columns.reserve(candidates.size());
-  for (const internal::Candidate& candidate : candidates) columns.push_back(candidate.*column);
+  for (const internal::Candidate& candidate : candidates) {
+    if (columns.empty() || columns.back() != candidate.*column) {
+      columns.push_back(candidate.*column);
+    }
+  }
   return ColumnNumbers(std::move(columns));
 }
 
@@ -62,10 +68,10 @@ void AppendCandidates(std::span<const double> delta, std::span<const std::int32_
 }
 
 std::vector<Hit> ExtractHits(std::vector<Candidate> candidates, int recording) {
-  std::ranges::stable_sort(candidates, {}, &Candidate::cost);
   // By start, the length of the hit that reserved it; by end, 1 where it is blanked.
   ColumnNumbers reserved = NumbersOf(candidates, &Candidate::start);
   ColumnNumbers blank = NumbersOf(candidates, &Candidate::column);
+  std::ranges::stable_sort(candidates, {}, &Candidate::cost);
   std::vector<Hit> hits;
   for (const Candidate& candidate : candidates) {
     const int end = candidate.column;

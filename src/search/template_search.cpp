@@ -156,7 +156,9 @@ std::vector<RecordingCandidates> CollectByRecording(
     if (collected.empty() || collected.back().recording != recording) {
       collected.push_back({recording, std::move(candidates[i])});
     } else {
-      std::ranges::move(candidates[i], std::back_inserter(collected.back().candidates));
+      std::vector<Candidate>& all = collected.back().candidates;
+      all.insert(all.end(), candidates[i].begin(), candidates[i].end());
+      candidates[i] = {};  // Not all of them twice.
     }
   }
   return collected;

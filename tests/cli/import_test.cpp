@@ -138,6 +138,8 @@ TEST_F(LibraryOnDisk, IsSearchedLikeItsFiles) {
                             recordings_.Clip("kickRFront1Reps", "sb", 2),
                             recordings_.Clip("jumpingJack1Reps", "sb", 1),
                             recordings_.Clip("jumpingJack1Reps", "sb", 2), "--tau", "1"}));
+  ExpectOneError(RunKinebase({"search", squat, "--in", library()}), 1,
+                 {"is a library", "--library"});
   // The recordings are needed no more.
   const auto before = Hits({squat, "--library", library()});
   fs::remove_all(recordings_.folder());
@@ -238,6 +240,11 @@ TEST_F(LibraryOnDisk, SaysWhatIsWrongWithAFolder) {
                  {"--library"});
   ExpectOneError(RunKinebase({"search", "a.json", "--library", library(), "--source-rate", "60"}),
                  2, {"--source-rate"});
+  ExpectOneError(RunKinebase({"annotate", "a.json", "--library", library(), "--strict"}), 2,
+                 {"--library have been read"});
+  ExpectOneError(
+      RunKinebase({"learn", "--library", library(), "--class", "a", "--skeleton", "a.asf"}), 2,
+      {"--library have been read"});
   ExpectOneError(RunKinebase({"search", "a.json", "--library", library(), "--strict"}), 2,
                  {"--strict"});
 }

@@ -83,6 +83,7 @@ TEST(Catalogue, FindsTakesByTheirWords) {
   EXPECT_THAT(found("front kick"), ElementsAre(second));
   EXPECT_THAT(found("kickrfront1"), ElementsAre(second));
   EXPECT_THAT(found("gym xx"), ElementsAre(third));
+  EXPECT_THAT(found(third + ".amc"), ElementsAre(third));
 }
 
 TEST(Catalogue, TakesMarksInAQueryForWhatPartsWords) {

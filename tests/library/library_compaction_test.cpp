@@ -153,6 +153,8 @@ TEST_F(CompactedLibrary, LeavesWhatIsDamagedForSomebodyToLookAt) {
   const CompactReport report = CompactLibrary(takes_.library());
   ASSERT_THAT(report.failures, SizeIs(1));
   EXPECT_EQ(report.failures[0].path, takes_.Segment(1));
+  EXPECT_THAT(report.failures[0].error.what(),
+              ::testing::HasSubstr("library remove LIBRARY --damaged"));
   EXPECT_EQ(report.segments_after, 2);
   EXPECT_THAT(VerifyLibrary(takes_.library()).damaged, SizeIs(1));
   EXPECT_THAT(RemoveTakes(takes_.library(), {.damaged = true}), SizeIs(1));

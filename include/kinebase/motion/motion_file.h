@@ -55,6 +55,8 @@ struct LoadOptions {
   std::filesystem::path marker_set;    // Tells where joints are; empty: the built-in ones.
   std::optional<UpAxis> up_axis;       // For files that do not tell, or tell wrong.
   std::string units;                   // The same for the unit of length, as CentimetresIn.
+
+  bool operator==(const LoadOptions&) const = default;
 };
 
 // What a file holds as it stands there, so that writing the same format loses nothing.
