@@ -78,9 +78,8 @@ void CheckUsage(const AnnotateOptions& options, const std::string& format) {
   if (!options.source.is_given()) {
     throw UsageError("--in is required, or --library; see 'kinebase annotate --help'");
   }
-  if (!options.source.library.empty() && options.background.empty() &&
-      options.common.load != LoadOptions{}) {
-    throw UsageError("takes of a --library have been read; options of reading are for files");
+  if (options.background.empty()) {
+    CheckReadsFiles(options.source.library, options.common.load);
   }
   if (options.tau && !options.background.empty()) {
     throw UsageError("annotate takes --tau or --background, not both");

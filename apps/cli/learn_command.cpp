@@ -12,6 +12,7 @@
 #include "cli/failure_output.h"
 #include "cli/feature_options.h"
 #include "cli/take_filter.h"
+#include "cli/take_source_options.h"
 #include "cli/update_template.h"
 #include "fmt/format.h"
 #include "kinebase/library/class_learning.h"
@@ -92,10 +93,7 @@ void CheckUsage(const LearnCommandOptions& options) {
                                  options.library.empty() ? "--list" : "--library",
                                  options.library.empty() ? "" : ", or --label WORD"));
   }
-  if (!options.library.empty() && options.background.empty() &&
-      options.common.load != LoadOptions{}) {
-    throw UsageError("takes of a --library have been read; options of reading are for files");
-  }
+  if (options.background.empty()) CheckReadsFiles(options.library, options.common.load);
   if (options.styles && options.Method() == "mt") {
     throw UsageError("--styles is for --method mt+");
   }

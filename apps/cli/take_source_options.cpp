@@ -1,6 +1,7 @@
 #include "cli/take_source_options.h"
 
 #include "cli/arguments.h"
+#include "cli/console.h"
 #include "cli/take_filter.h"
 
 namespace kinebase::cli {
@@ -17,6 +18,11 @@ CLI::Option* AddSourceOptions(CLI::App& command, TakeSourceOptions& options,
   for (CLI::Option* filter : AddTakeFilterOptions(command, options.filter)) filter->needs(library);
   AddMemoryOption(command, options.memory_bytes);
   return library;
+}
+
+void CheckReadsFiles(const std::filesystem::path& library, const LoadOptions& load) {
+  if (library.empty() || load == LoadOptions{}) return;
+  throw UsageError("takes of a --library have been read; options of reading are for files");
 }
 
 TakeSource SourceOf(const TakeSourceOptions& options, const LoadOptions& load) {

@@ -30,6 +30,9 @@ struct TakeSourceOptions {
 CLI::Option* AddSourceOptions(CLI::App& command, TakeSourceOptions& options,
                               const std::string& verb);
 
+// Errors  UsageError if there are options of reading for takes of a library, which have been read.
+void CheckReadsFiles(const std::filesystem::path& library, const LoadOptions& load);
+
 // Errors  As FindMotionFiles and TakeLibrary.
 [[nodiscard]] TakeSource SourceOf(const TakeSourceOptions& options, const LoadOptions& load);
 

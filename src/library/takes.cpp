@@ -99,8 +99,11 @@ std::vector<fs::path> FindMotionFiles(std::span<const fs::path> paths) {
     if (fs::is_directory(path, unreachable)) {
       auto below = FilesBelow(path, IsReadable);
       if (below.empty() && IsLibrary(path)) {
-        throw Error(ErrorCode::kInvalidArgument,
-                    "is a library, not a folder of motion files; --library takes it", {path});
+        throw Error(
+            ErrorCode::kInvalidArgument,
+            "is a library, not a folder of motion files; search, annotate and learn take it "
+            "as --library",
+            {path});
       }
       if (below.empty()) {
         throw Error(ErrorCode::kNotFound,
